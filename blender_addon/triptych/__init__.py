@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Triptych: a rasterizer, a ray tracer and a radiosity solver in one render engine.
+
+The modules, in the order in which data walks through them:
+
+    data        plain descriptions of what the core takes; no bpy, no ctypes
+    compat      what differs between Blender's versions
+    export_*    Blender's scene to data
+    core        data to the shared library (the only ctypes)
+    gltf        data to a .glb file, without the library
+    engine, properties, panels      Blender's side: what is registered
+"""
+
+bl_info = {
+    "name": "Triptych",
+    "author": "Triptych contributors",
+    "version": (0, 1, 0),
+    "blender": (3, 4, 0),
+    "location": "Render Properties > Render Engine",
+    "description": "Rasterizer, ray tracer and radiosity side by side",
+    "category": "Render",
+}
+
+
+def _modules():
+    # Imported on demand, so that `import triptych.gltf` works in a script that never registers.
+    from . import engine, export_operator, panels, properties
+
+    return (properties, engine, panels, export_operator)
+
+
+_registered = []
+
+
+def register():
+    """Registers everything; a second call without unregister() starts afresh. Needs no library."""
+    unregister()
+    try:
+        for module in _modules():
+            _registered.append(module)
+            module.register()
+    except BaseException:
+        unregister()
+        raise
+
+
+def unregister():
+    """Takes back what register() did. Nothing happens where nothing is registered."""
+    while _registered:
+        _registered.pop().unregister()

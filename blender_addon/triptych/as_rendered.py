@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Exports a scene exactly as F12 sees it.
+
+Only a render engine is given a depsgraph of Blender's render mode (render visibility, render levels of subdivision), so
+one is registered for the moment of the export and asked to render.
+"""
+
+import bpy
+
+from . import data
+from .export_scene import export_scene
+
+# What would run after the engine, or in its place.
+_SWITCHED_OFF = ("use_compositing", "use_sequencer", "use_freestyle", "use_border", "use_multiview")
+
+
+def export_as_rendered(scene, view_layer=None, triangulate=False):
+    """The data.Scene of a bpy.types.Scene; view_layer: its name, or the active or first one.
+
+    Without a camera Blender does not render: the viewport's depsgraph stands in, with a warning.
+    """
+    if view_layer is None:
+        active = bpy.context.view_layer
+        view_layer = active.name if scene.view_layers.get(active.name) == active else scene.view_layers[0].name
+    if scene.camera is None:
+        depsgraph = scene.view_layers[view_layer].depsgraph
+        depsgraph.update()
+        result = export_scene(depsgraph, triangulate, require_camera=False)
+        result.warn(f"scene '{scene.name}': there is no camera; what the viewport shows is exported")
+        return result
+
+    done = {}
+
+    class Exporter(bpy.types.RenderEngine):
+        bl_idname = "TRIPTYCH_EXPORT"
+        bl_label = "Triptych Export"
+
+        def render(self, depsgraph):
+            try:
+                done["scene"] = export_scene(depsgraph, triangulate, require_camera=False)
+            except Exception as error:  # handed on below: Blender would only print it
+                done["error"] = error
+            self.end_result(self.begin_result(0, 0, self.resolution_x, self.resolution_y))
+
+    render = scene.render
+    before = {name: getattr(render, name) for name in ("engine", *_SWITCHED_OFF)}
+    bpy.utils.register_class(Exporter)
+    try:
+        render.engine = Exporter.bl_idname
+        for name in _SWITCHED_OFF:
+            setattr(render, name, False)
+        bpy.ops.render.render(layer=view_layer, scene=scene.name)
+    finally:
+        for name, value in before.items():
+            setattr(render, name, value)
+        bpy.utils.unregister_class(Exporter)
+    if "error" in done:
+        raise done["error"]
+    if "scene" not in done:
+        raise data.ExportError(f"scene '{scene.name}': Blender did not start the export")
+    return done["scene"]

@@ -1,0 +1,36 @@
+// What is behind the ABI's handles.
+#pragma once
+
+#include <atomic>
+#include <memory>
+
+#include "film/tiles.h"
+#include "scene/scene.h"
+#include "shading/snapshot.h"
+
+struct TrpScene {
+    trp::Scene data;
+    std::shared_ptr<const trp::Snapshot> snapshot;  // of the last commit; null before the first
+};
+
+struct TrpRender {
+    std::shared_ptr<const trp::Snapshot> snapshot;
+    uint32_t method = 0;  // index into the table
+    trp::Settings settings;
+    trp::Window window;
+    trp::PassList passes;
+    std::unique_ptr<trp::Film> film;  // of the last run
+    std::atomic<bool> cancelled{false}, running{false};
+    TrpStatistics statistics{};
+};
+
+namespace trp {
+
+struct MethodRow {
+    const char *name, *label, *description;
+    bool (*run)(RenderJob&, const RenderEvents&);
+};
+extern const MethodRow kMethods[];
+extern const uint32_t kMethodCount;
+
+}  // namespace trp

@@ -1,0 +1,193 @@
+// Renders.
+#include <sys/resource.h>
+
+#include <chrono>
+
+#include "api/guard.h"
+#include "api/handles.h"
+#include "base/parallel.h"
+#include "film/picture_file.h"
+
+using namespace trp;
+
+namespace {
+
+TrpCallbacks callback_defaults() {
+    return {};
+}
+
+RenderEvents events_of(const TrpCallbacks& callbacks) {
+    RenderEvents events;
+    if (callbacks.progress)
+        events.progress = [=](const TrpProgress& p) { return callbacks.progress(callbacks.user, &p) != 0; };
+    if (callbacks.tile) events.tile = [=](const TrpTile& t) { return callbacks.tile(callbacks.user, &t) != 0; };
+    if (callbacks.log) events.log = [=](const std::string& text) { callbacks.log(callbacks.user, text.c_str()); };
+    return events;
+}
+
+uint64_t peak_memory() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+// Marks the render as running for as long as it stands.
+struct Running {
+    explicit Running(TrpRender& render) : render(render) {
+        if (render.running.exchange(true)) fail(TRP_ERROR_STATE, "the render is running");
+        render.cancelled = false;
+    }
+    ~Running() { render.running = false; }
+    Running(const Running&) = delete;
+    Running& operator=(const Running&) = delete;
+    TrpRender& render;
+};
+
+void check_idle(const TrpRender* render) {
+    check_pointer(render, "render");
+    if (render->running) fail(TRP_ERROR_STATE, "the render is running");
+}
+
+const Film& film_of(const TrpRender* render) {
+    check_pointer(render, "render");
+    if (!render->film) fail(TRP_ERROR_STATE, "the render has not run");
+    return *render->film;
+}
+
+}  // namespace
+
+extern "C" {
+
+TrpStatus trp_render_create(TrpScene* scene, const char* method, TrpRender** render) {
+    return guard([&] {
+        check_pointer(scene, "scene");
+        check_pointer(method, "method");
+        check_pointer(render, "render");
+        if (!scene->snapshot) fail(TRP_ERROR_STATE, "the scene was never committed");
+        std::string known;
+        for (uint32_t m = 0; m < kMethodCount; ++m) {
+            if (std::strcmp(method, kMethods[m].name) == 0) {
+                auto made = std::make_unique<TrpRender>();
+                made->snapshot = scene->snapshot;
+                made->method = m;
+                *render = made.release();
+                return TRP_OK;
+            }
+            known += std::string(m ? ", " : "") + kMethods[m].name;
+        }
+        fail(TRP_ERROR_ARGUMENT, "there is no method \"{}\"; the methods are {}", method, known);
+    });
+}
+
+void trp_render_destroy(TrpRender* render) {
+    delete render;
+}
+
+TrpStatus trp_render_set_film(TrpRender* render, uint32_t width, uint32_t height, uint32_t x, uint32_t y, uint32_t w,
+                              uint32_t h) {
+    return guard([&] {
+        check_idle(render);
+        const bool whole = w == 0 && h == 0;
+        const Window window{width, height, whole ? 0 : x, whole ? 0 : y, whole ? width : w, whole ? height : h};
+        check_window(window);
+        render->window = window;
+        return TRP_OK;
+    });
+}
+
+TrpStatus trp_render_set(TrpRender* render, const char* name, const char* value) {
+    return guard([&] {
+        check_idle(render);
+        check_pointer(name, "name");
+        check_pointer(value, "value");
+        set_setting(render->settings, name, value);
+        return TRP_OK;
+    });
+}
+
+TrpStatus trp_render_add_pass(TrpRender* render, const char* name) {
+    return guard([&] {
+        check_idle(render);
+        check_pointer(name, "name");
+        render->passes.add(find_pass(name));
+        return TRP_OK;
+    });
+}
+
+TrpStatus trp_callbacks_init(TrpCallbacks* callbacks, size_t size) {
+    return init_struct(callbacks, size, callback_defaults());
+}
+
+TrpStatus trp_render_run(TrpRender* render, const TrpCallbacks* callbacks) {
+    return guard([&] {
+        check_pointer(render, "render");
+        const RenderEvents events =
+            callbacks ? events_of(read_struct(callbacks, callback_defaults(), "callbacks")) : RenderEvents{};
+        const Running running(*render);
+        render->film = std::make_unique<Film>(render->window, render->passes);
+        RenderJob::Counts counts;
+        RenderJob job{render->snapshot, render->settings, render->film.get(), &render->cancelled, &counts};
+        const auto start = std::chrono::steady_clock::now();
+        const bool whole = kMethods[render->method].run(job, events);
+        TrpStatistics& s = render->statistics = {};
+        s.threads = thread_count(render->settings.threads);
+        s.render_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        s.primary_rays = counts.primary_rays;
+        s.shadow_rays = counts.shadow_rays;
+        s.primary_seconds = 1e-9 * static_cast<double>(counts.primary_time);
+        s.shadow_seconds = 1e-9 * static_cast<double>(counts.shadow_time);
+        s.shading_seconds = 1e-9 * static_cast<double>(counts.shading_time);
+        s.triangles = render->snapshot->info.triangle_count;
+        s.peak_memory_bytes = peak_memory();
+        return whole ? TRP_OK : TRP_CANCELLED;
+    });
+}
+
+TrpStatus trp_render_cancel(TrpRender* render) {
+    return guard([&] {
+        check_pointer(render, "render");
+        render->cancelled = true;
+        return TRP_OK;
+    });
+}
+
+TrpStatus trp_render_read(const TrpRender* render, const char* pass, uint32_t x, uint32_t y, uint32_t width,
+                          uint32_t height, float* buffer, size_t float_count) {
+    return guard([&] {
+        const Film& film = film_of(render);
+        check_pointer(pass, "pass");
+        check_pointer(buffer, "buffer");
+        const PassId id = find_pass(pass);
+        if (!film.passes().has(id)) fail(TRP_ERROR_STATE, "pass {} was not asked for before the render ran", pass);
+        const Window& window = film.window();
+        if (x < window.x || y < window.y || x + uint64_t{width} > window.x + uint64_t{window.w} ||
+            y + uint64_t{height} > window.y + uint64_t{window.h})
+            fail(TRP_ERROR_ARGUMENT,
+                 "{} x {} pixels at ({}, {}) are not within the render's window of {} x {} at ({}, {})", width, height,
+                 x, y, window.w, window.h, window.x, window.y);
+        const uint64_t needed = uint64_t{width} * height * channel_count(id);
+        if (float_count != needed)
+            fail(TRP_ERROR_ARGUMENT, "the buffer has {} floats where {} are needed", float_count, needed);
+        film.read(id, x, y, width, height, buffer);
+        return TRP_OK;
+    });
+}
+
+TrpStatus trp_render_write(const TrpRender* render, const char* path) {
+    return guard([&] {
+        check_idle(render);
+        check_pointer(path, "path");
+        write_picture_file(film_of(render), path);
+        return TRP_OK;
+    });
+}
+
+TrpStatus trp_render_statistics(const TrpRender* render, TrpStatistics* statistics) {
+    return guard([&] {
+        film_of(render);
+        write_struct(statistics, render->statistics, "statistics");
+        return TRP_OK;
+    });
+}
+
+}  // extern "C"

@@ -1,0 +1,80 @@
+// Methods, settings, passes and node types describe themselves.
+#include "api/guard.h"
+#include "api/handles.h"
+#include "scene/nodes.h"
+#include "trace/ray_casting.h"
+
+namespace trp {
+
+const MethodRow kMethods[] = {
+    {"ray_casting", "Ray Casting",
+     "One ray to a sample: the nearest surface with light, shadow and highlight, no reflections", ray_casting},
+};
+const uint32_t kMethodCount = sizeof kMethods / sizeof kMethods[0];
+
+namespace {
+
+void check_index(uint32_t index, uint32_t count, const char* what) {
+    if (index >= count) fail(TRP_ERROR_ARGUMENT, "there is no {} {}; there are {}", what, index, count);
+}
+
+}  // namespace
+}  // namespace trp
+
+using namespace trp;
+
+extern "C" {
+
+uint32_t trp_node_count(void) {
+    return kNodeTypeCount;
+}
+TrpStatus trp_node_info(uint32_t index, TrpNodeInfo* info) {
+    return guard([&] {
+        check_index(index, kNodeTypeCount, "node type");
+        const NodeType& row = kNodeTypes[index];
+        write_struct(info, {0, row.type, row.name, row.description, row.inputs}, "info");
+        return TRP_OK;
+    });
+}
+
+uint32_t trp_method_count(void) {
+    return kMethodCount;
+}
+TrpStatus trp_method_info(uint32_t index, TrpMethodInfo* info) {
+    return guard([&] {
+        check_index(index, kMethodCount, "method");
+        const MethodRow& row = kMethods[index];
+        write_struct(info, {0, row.name, row.label, row.description}, "info");
+        return TRP_OK;
+    });
+}
+
+uint32_t trp_setting_count(void) {
+    return kSettingCount;
+}
+TrpStatus trp_setting_info(uint32_t index, TrpSettingInfo* info) {
+    return guard([&] {
+        check_index(index, kSettingCount, "setting");
+        const SettingRow& row = kSettings[index];
+        write_struct(info,
+                     {0, row.type, row.name, row.label, row.description, row.unit, row.default_value, row.minimum,
+                      row.maximum, row.choices, row.methods},
+                     "info");
+        return TRP_OK;
+    });
+}
+
+uint32_t trp_pass_count(void) {
+    return kPassCount;
+}
+TrpStatus trp_pass_info(uint32_t index, TrpPassInfo* info) {
+    return guard([&] {
+        check_index(index, kPassCount, "pass");
+        const Pass& row = kPasses[index];
+        write_struct(info, {0, channel_count(static_cast<PassId>(index)), row.name, row.channels, row.description, "*"},
+                     "info");
+        return TRP_OK;
+    });
+}
+
+}  // extern "C"

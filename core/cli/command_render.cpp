@@ -1,0 +1,136 @@
+// `triptych render`: a picture of a glTF scene by one method. SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <chrono>
+#include <memory>
+
+#include "commands.h"
+#include "framing.h"
+#include "interrupt.h"
+#include "render_job.h"
+#include "report.h"
+#include "statistics.h"
+#include "tables.h"
+
+namespace triptych::cli {
+namespace {
+
+constexpr uint32_t default_width = 960;
+constexpr uint32_t default_height = 540;
+
+struct CallbackState {
+    ProgressLine line;
+    const InterruptGuard& guard;
+    bool quiet;
+};
+
+int32_t on_progress(void* user, const TrpProgress* progress) {
+    CallbackState& state = *static_cast<CallbackState*>(user);
+    state.line.show(*progress);
+    return state.guard.interrupted() ? 0 : 1;
+}
+
+void on_log(void* user, const char* text) {
+    CallbackState& state = *static_cast<CallbackState*>(user);
+    if (state.quiet) return;
+    state.line.clear();
+    fmt::print(stderr, "triptych: {}\n", one_line(text));
+}
+
+void apply_settings(TrpRender* render, const LoadedScene& loaded, const RenderJob& job) {
+    for (const auto& [name, value] : loaded.settings) {
+        check(trp_render_set(render, name.c_str(), value.c_str()),
+              fmt::format("{}: extras.triptych.settings.{}", job.scene, one_line(name)));
+    }
+    for (const auto& [name, value] : job.settings) check(trp_render_set(render, name.c_str(), value.c_str()));
+    for (const std::string& pass : job.passes) check(trp_render_add_pass(render, pass.c_str()));
+}
+
+void run_render(TrpRender* render, InterruptGuard& guard, bool quiet) {
+    CallbackState state{ProgressLine(!quiet && error_is_terminal()), guard, quiet};
+    TrpCallbacks callbacks;
+    check(trp_callbacks_init(&callbacks, sizeof callbacks));
+    callbacks.user = &state;
+    callbacks.progress = on_progress;
+    callbacks.log = on_log;
+    guard.set_render(render);
+    const TrpStatus status = trp_render_run(render, &callbacks);
+    // Before the render is let go, so that an interrupt finds one or the other.
+    guard.begin_writing();
+    guard.set_render(nullptr);
+    state.line.clear();
+    if (status == TRP_CANCELLED || guard.interrupted()) throw Error("interrupted");
+    check(status);
+}
+
+CommandCosts costs_of(const RenderJob& job, const LoadedScene& loaded, TrpRender* render) {
+    CommandCosts costs;
+    costs.method = job.method;
+    costs.load_seconds = loaded.load_seconds;
+    costs.scene.struct_size = sizeof costs.scene;
+    check(trp_scene_info(loaded.scene.get(), &costs.scene));
+    costs.commit_seconds = loaded.commit_seconds;
+    costs.scene.bvh_seconds = loaded.bvh_seconds;
+    costs.render.struct_size = sizeof costs.render;
+    check(trp_render_statistics(render, &costs.render));
+    return costs;
+}
+
+int run(RenderJob job) {
+    check_job(job);
+    InterruptGuard guard;
+    LoadedScene loaded = load_gltf(std::filesystem::u8path(job.scene), job.camera, job.thread_count());
+    const auto choose = [](uint32_t wanted, uint32_t of_file, uint32_t usual) {
+        return wanted > 0 ? wanted : of_file > 0 ? of_file : usual;
+    };
+    const uint32_t width = choose(job.width, loaded.film_width, default_width);
+    const uint32_t height = choose(job.height, loaded.film_height, default_height);
+    check_tile(job, width, height);
+    complete_scene(loaded, width, height, job.thread_count());
+    if (!job.quiet) print_warnings(all_warnings(loaded));
+
+    const RenderHandle render = make_render(loaded.scene.get(), job.method);
+    set_film(render.get(), job, width, height);
+    apply_settings(render.get(), loaded, job);
+    run_render(render.get(), guard, job.quiet);
+
+    const auto start = std::chrono::steady_clock::now();
+    check(trp_render_write(render.get(), job.output.c_str()));  // its message names the file
+    const double write_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (!job.stats.empty()) {
+        CommandCosts costs = costs_of(job, loaded, render.get());
+        costs.write_seconds = write_seconds;
+        costs.width = width;
+        costs.height = height;
+        write_file(job.stats, statistics_json(costs));
+    }
+    return 0;
+}
+
+}  // namespace
+
+Command add_render_command(CLI::App& program) {
+    CLI::App* app = program.add_subcommand("render", "Render a glTF scene into a picture");
+    const auto job = std::make_shared<RenderJob>();
+    app->add_option("SCENE", job->scene, "A .glb or .gltf file")->required();
+    app->add_option("--method", job->method, "One of " + method_names())->required();
+    app->add_option("--output", job->output, "The picture: .exr (all passes, float) or .png")->required();
+    app->add_option("--camera", job->camera, "Name of the camera; without it the scene's own, or its first");
+    app->add_option("--width", job->width, "Pixels; without it as the scene says, or 960")
+        ->check(CLI::Range(1u, 65536u));
+    app->add_option("--height", job->height, "Pixels; without it as the scene says, or 540")
+        ->check(CLI::Range(1u, 65536u));
+    app->add_option("--samples", job->samples, "Samples to a pixel: --set samples=N");
+    app->add_option("--seed", job->seed, "Of the random sequences: --set seed=N");
+    app->add_option("--threads", job->threads, "Threads; 0: one to a core");
+    app->add_option("--set", job->set, "NAME=VALUE: a setting of `triptych settings`")
+        ->take_all()
+        ->allow_extra_args(false);
+    app->add_option("--pass", job->passes, "A pass of `triptych passes`")->take_all()->allow_extra_args(false);
+    app->add_option("--tile", job->tile_text, "X,Y,W,H: this part of the picture alone, from its top left");
+    app->add_option("--stats", job->stats, "Write what it cost into this file, as JSON");
+    app->add_flag("--quiet", job->quiet, "No progress and no warnings");
+    return {app, [job] { return run(*job); }};
+}
+
+}  // namespace triptych::cli

@@ -1,0 +1,23 @@
+// The commands. Each adds itself to the command line, in a file of its own, and runs when it was called. A command says
+// what it does through its return value (an exit code) or an Error. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <functional>
+#include <vector>
+
+namespace triptych::cli {
+
+struct Command {
+    CLI::App* app;
+    std::function<int()> run;
+};
+
+Command add_render_command(CLI::App& program);
+Command add_info_command(CLI::App& program);
+Command add_methods_command(CLI::App& program);
+Command add_settings_command(CLI::App& program);
+Command add_passes_command(CLI::App& program);
+
+}  // namespace triptych::cli

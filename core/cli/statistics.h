@@ -1,0 +1,21 @@
+// The JSON that --stats writes: what a command cost. Its first keys are fixed; others may be added.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "error.h"
+
+namespace triptych::cli {
+
+struct CommandCosts {
+    std::string method;
+    double load_seconds = 0.0, commit_seconds = 0.0, write_seconds = 0.0;
+    TrpSceneInfo scene{};
+    TrpStatistics render{};
+    uint32_t width = 0, height = 0;
+};
+
+std::string statistics_json(const CommandCosts& costs);
+
+}  // namespace triptych::cli

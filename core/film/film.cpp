@@ -1,0 +1,98 @@
+#include "film/film.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "base/error.h"
+
+namespace trp {
+
+void PassList::add(PassId pass) {
+    if (has(pass)) return;
+    first_channel_[pass] = channels_;
+    channels_ += static_cast<int>(channel_count(pass));
+    order_.push_back(pass);
+}
+
+BlockSums::BlockSums(const PassList& passes) : passes_(passes), values_(passes.channels()) {}
+
+void BlockSums::clear() {
+    for (Channel& channel : values_) std::fill_n(channel.data, kBatch, 0.0f);
+}
+
+void BlockSums::add(PassId pass, int lane, const Vec3& v) {
+    if (!passes_.has(pass)) return;
+    const int first = passes_.first_channel(pass);
+    for (int c = 0; c < 3; ++c) values_[first + c].data[lane] += v[c];
+}
+
+void check_window(const Window& window) {
+    constexpr uint32_t kGreatestSide = 65536;
+    constexpr uint64_t kGreatestPixels = uint64_t{1} << 30;
+    if (window.width < 1 || window.height < 1)
+        fail(TRP_ERROR_ARGUMENT, "a film of {} x {} pixels has no pixels", window.width, window.height);
+    if (window.width > kGreatestSide || window.height > kGreatestSide)
+        fail(TRP_ERROR_ARGUMENT, "a film of {} x {} pixels: a side has at most {}", window.width, window.height,
+             kGreatestSide);
+    if (window.w < 1 || window.h < 1 || window.x + uint64_t{window.w} > window.width ||
+        window.y + uint64_t{window.h} > window.height)
+        fail(TRP_ERROR_ARGUMENT, "a window of {} x {} pixels at ({}, {}) is not within the film of {} x {}", window.w,
+             window.h, window.x, window.y, window.width, window.height);
+    if (uint64_t{window.w} * window.h > kGreatestPixels)
+        fail(TRP_ERROR_MEMORY, "a window of {} x {} pixels: at most {} pixels can be held; render it in parts",
+             window.w, window.h, kGreatestPixels);
+}
+
+void Film::Free::operator()(float* p) const {
+    std::free(p);
+}
+
+Film::Film(const Window& window, const PassList& passes) : window_(window), passes_(passes) {
+    check_window(window);
+    first_block_x_ = window.x / kBlockSide;
+    first_block_y_ = window.y / kBlockSide;
+    blocks_across_ = (window.x + window.w - 1) / kBlockSide - first_block_x_ + 1;
+    const uint32_t blocks_up = (window.y + window.h - 1) / kBlockSide - first_block_y_ + 1;
+    block_samples_.assign(size_t{blocks_across_} * blocks_up, 0);
+    const size_t count = size_t{window.w} * window.h * static_cast<size_t>(passes.channels());
+    // Zeroed pages come from the system as they are first touched, by the threads that fill them.
+    values_.reset(static_cast<float*>(std::calloc(count, sizeof(float))));
+    if (!values_)
+        fail(TRP_ERROR_MEMORY, "no memory for a film of {} x {} pixels with {} channels", window.w, window.h,
+             passes.channels());
+}
+
+uint32_t Film::block_index(uint32_t block_x, uint32_t block_y) const {
+    return (block_y - first_block_y_) * blocks_across_ + block_x - first_block_x_;
+}
+
+void Film::add_block(uint32_t block_x, uint32_t block_y, const BlockSums& sums, uint32_t samples, bool first) {
+    const int channels = passes_.channels();
+    for (int lane = 0; lane < kBatch; ++lane) {
+        const uint32_t x = block_x * kBlockSide + lane_x(lane), y = block_y * kBlockSide + lane_y(lane);
+        if (x < window_.x || y < window_.y || x - window_.x >= window_.w || y - window_.y >= window_.h) continue;
+        float* pixel = &values_[(size_t{y - window_.y} * window_.w + (x - window_.x)) * static_cast<size_t>(channels)];
+        for (const PassId pass : passes_.order()) {
+            const int begin = passes_.first_channel(pass), end = begin + static_cast<int>(channel_count(pass));
+            if (!kPasses[pass].averaged && !first) continue;
+            for (int c = begin; c < end; ++c) pixel[c] += sums.values_[c].data[lane];
+        }
+    }
+    block_samples_[block_index(block_x, block_y)] += samples;
+}
+
+void Film::read(PassId pass, uint32_t x, uint32_t y, uint32_t w, uint32_t h, float* out) const {
+    const auto channels = static_cast<size_t>(passes_.channels());
+    const size_t begin = static_cast<size_t>(passes_.first_channel(pass)), count = channel_count(pass);
+    for (uint32_t row = y; row < y + h; ++row)
+        for (uint32_t column = x; column < x + w; ++column) {
+            const uint32_t samples = block_samples_[block_index(column / kBlockSide, row / kBlockSide)];
+            const float scale = kPasses[pass].averaged && samples ? 1 / static_cast<float>(samples) : 1;
+            const float* pixel =
+                &values_[(size_t{row - window_.y} * window_.w + (column - window_.x)) * channels + begin];
+            for (size_t c = 0; c < count; ++c)
+                *out++ = pass == kSampleCount ? static_cast<float>(samples) : pixel[c] * scale;
+        }
+}
+
+}  // namespace trp

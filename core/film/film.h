@@ -1,0 +1,95 @@
+// The film: samples become pixels here. Methods hand in blocks of 16 × 16 pixels on a grid fixed to the picture.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "film/passes.h"
+#include "shading/batch.h"
+
+namespace trp {
+
+inline constexpr uint32_t kBlockSide = 16;
+
+// The pixel of a lane within its block: packets of 16 lanes are 4 × 4 pixels, and so are the 16 packets of a block.
+inline uint32_t lane_x(int lane) {
+    return static_cast<uint32_t>(((lane >> 4) & 3) * 4 + (lane & 3));
+}
+inline uint32_t lane_y(int lane) {
+    return static_cast<uint32_t>((lane >> 6) * 4 + ((lane >> 2) & 3));
+}
+
+// The part of a picture that is rendered; pixels count from the bottom left.
+struct Window {
+    uint32_t width = 960, height = 540;  // of the whole picture
+    uint32_t x = 0, y = 0, w = 960, h = 540;
+};
+
+// The passes of a render that are asked for, and where their channels lie.
+class PassList {
+  public:
+    PassList() { add(kCombined); }
+    void add(PassId pass);
+    bool has(PassId pass) const { return first_channel_[pass] >= 0; }
+    int first_channel(PassId pass) const { return first_channel_[pass]; }
+    int channels() const { return channels_; }
+    const std::vector<PassId>& order() const { return order_; }
+
+  private:
+    int first_channel_[kPassCount] = {-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
+    int channels_ = 0;
+    std::vector<PassId> order_;
+};
+
+// What a method writes for one block: for each pass asked for, sums over samples or the first sample's values.
+class BlockSums {
+  public:
+    explicit BlockSums(const PassList& passes);
+    void clear();
+    // The lanes of a channel; null where the pass was not asked for.
+    float* channel(PassId pass, int c) {
+        return passes_.has(pass) ? values_[passes_.first_channel(pass) + c].data : nullptr;
+    }
+    // Adds a colour or vector to a pass that was asked for; without effect otherwise.
+    void add(PassId pass, int lane, const Vec3& v);
+
+  private:
+    friend class Film;
+    struct alignas(64) Channel {
+        Lanes data;
+    };
+    const PassList& passes_;
+    std::vector<Channel> values_;
+};
+
+class Film {
+  public:
+    // Throws Error where the picture is empty, or larger than can be held.
+    Film(const Window& window, const PassList& passes);
+
+    const Window& window() const { return window_; }
+    const PassList& passes() const { return passes_; }
+    // Adds a block, whose grid place is (block_x, block_y); lanes outside the window are dropped.
+    void add_block(uint32_t block_x, uint32_t block_y, const BlockSums& sums, uint32_t samples, bool first);
+    // The pixels of a pass, channels interleaved; sums are divided by the number of samples.
+    void read(PassId pass, uint32_t x, uint32_t y, uint32_t w, uint32_t h, float* out) const;
+
+  private:
+    uint32_t block_index(uint32_t block_x, uint32_t block_y) const;
+
+    Window window_;
+    PassList passes_;
+    uint32_t first_block_x_, first_block_y_, blocks_across_;
+    std::vector<uint32_t> block_samples_;
+    struct Free {
+        void operator()(float* p) const;
+    };
+    std::unique_ptr<float[], Free> values_;  // pixel by pixel, the channels of all passes together
+};
+
+// Throws Error unless 1 ≤ width, height ≤ 65536, the window lies within, and its pixels can be held.
+void check_window(const Window& window);
+
+}  // namespace trp

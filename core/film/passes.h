@@ -1,0 +1,37 @@
+// The table of passes: one row each, from which the ABI, the film and the files are made.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace trp {
+
+enum PassId : uint32_t {
+    kCombined,
+    kDepth,
+    kPosition,
+    kNormal,
+    kUv,
+    kAlbedo,
+    kEmit,
+    kObjectIndex,
+    kMaterialIndex,
+    kShadow,
+    kSampleCount,
+    kPassCount
+};
+
+struct Pass {
+    const char* name;
+    const char* channels;
+    const char* description;
+    bool averaged;  // over the samples of a pixel; else the first sample's value
+};
+
+extern const Pass kPasses[kPassCount];
+
+uint32_t channel_count(PassId pass);
+// Throws Error where there is no such pass.
+PassId find_pass(const std::string& name);
+
+}  // namespace trp

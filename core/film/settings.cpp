@@ -1,0 +1,117 @@
+#include "film/settings.h"
+
+#include <charconv>
+#include <cmath>
+#include <vector>
+
+#include "base/error.h"
+
+namespace trp {
+namespace {
+
+const char* const kSpeculars[] = {"none", "phong", "blinn", nullptr};
+const char* const kNormals[] = {"mesh", "averaged", nullptr};
+const char* const kFalloffs[] = {"light", "none", "linear", "quadratic", nullptr};
+const char* const kFilters[] = {"box", "gaussian", "blackman_harris", nullptr};
+
+}  // namespace
+
+const SettingRow kSettings[] = {
+    {TRP_TYPE_INT, "samples", "Samples", "Rays through each pixel", "", "16", 1, 65536, nullptr, "*",
+     [](Settings& s, const double* v) { s.samples = static_cast<uint32_t>(*v); }},
+    {TRP_TYPE_INT, "seed", "Seed", "Another seed gives other noise", "", "0", 0, 2147483647, nullptr, "*",
+     [](Settings& s, const double* v) { s.seed = static_cast<uint32_t>(*v); }},
+    {TRP_TYPE_INT, "threads", "Threads", "Threads that work; 0 uses every core", "", "0", 0, 1024, nullptr, "*",
+     [](Settings& s, const double* v) { s.threads = static_cast<uint32_t>(*v); }},
+    {TRP_TYPE_BOOL, "shadows", "Shadows", "Lights are blocked by what stands in their way", "", "on", 0, 1, nullptr,
+     "*", [](Settings& s, const double* v) { s.shadows = *v != 0; }},
+    {TRP_TYPE_ENUM, "shading.specular", "Specular",
+     "The highlight of lights: none, Phong's (V·R)^n, or Blinn's (N·H)^n, which is about twice as wide for the same n",
+     "", "phong", 0, 0, kSpeculars, "*", [](Settings& s, const double* v) { s.specular = static_cast<Specular>(*v); }},
+    {TRP_TYPE_COLOR, "shading.ambient", "Ambient light",
+     "I_A, which reaches every surface from everywhere; the world's own light is sampled and needs none", "W/(m² sr)",
+     "0,0,0", 0, 1e6, nullptr, "*",
+     [](Settings& s, const double* v) {
+         s.ambient = Vec3(static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]));
+     }},
+    {TRP_TYPE_ENUM, "shading.normals", "Normals",
+     "The mesh's own normals, or averages of the faces around each position", "", "mesh", 0, 0, kNormals, "*",
+     [](Settings& s, const double* v) { s.normals = static_cast<NormalChoice>(*v); }},
+    {TRP_TYPE_ENUM, "shading.falloff", "Falloff",
+     "How light fades with distance: each light's own way, not at all, with distance, or with its square; all agree at "
+     "one metre",
+     "", "light", 0, 0, kFalloffs, "*",
+     [](Settings& s, const double* v) {
+         constexpr int32_t kOf[] = {-1, TRP_FALLOFF_CONSTANT, TRP_FALLOFF_LINEAR, TRP_FALLOFF_PHYSICAL};
+         s.falloff = kOf[static_cast<int>(*v)];
+     }},
+    {TRP_TYPE_ENUM, "film.filter", "Pixel filter", "How samples are weighed around a pixel", "", "blackman_harris", 0,
+     0, kFilters, "*", [](Settings& s, const double* v) { s.filter = static_cast<PixelFilter::Kind>(*v); }},
+    {TRP_TYPE_FLOAT, "film.filter_width", "Filter width",
+     "Width of the pixel filter; 0 sends every ray through the pixel's centre", "pixels", "1.5", 0, 16, nullptr, "*",
+     [](Settings& s, const double* v) { s.filter_width = static_cast<float>(*v); }},
+    {TRP_TYPE_BOOL, "film.transparent", "Transparent", "The background is left out of the picture, with an alpha of 0",
+     "", "off", 0, 1, nullptr, "*", [](Settings& s, const double* v) { s.transparent = *v != 0; }},
+    {TRP_TYPE_INT, "film.tile_size", "Tile size",
+     "Side of the tiles in which the picture is made; the picture does not depend on it", "pixels", "64", 16, 4096,
+     nullptr, "*", [](Settings& s, const double* v) { s.tile_size = static_cast<uint32_t>(*v); }},
+};
+const uint32_t kSettingCount = sizeof kSettings / sizeof kSettings[0];
+
+namespace {
+
+std::vector<double> read_numbers(const SettingRow& row, const std::string& text) {
+    std::vector<double> numbers;
+    const char *at = text.data(), *const end = text.data() + text.size();
+    while (true) {
+        while (at < end && *at == ' ') ++at;
+        double value = 0;
+        const auto [next, error] = std::from_chars(at, end, value);
+        if (error != std::errc() || !std::isfinite(value)) break;
+        numbers.push_back(value);
+        at = next;
+        while (at < end && *at == ' ') ++at;
+        if (at == end || *at != ',') break;
+        ++at;
+    }
+    const size_t wanted = row.type == TRP_TYPE_COLOR ? 3 : 1;
+    const bool whole = row.type != TRP_TYPE_INT || (!numbers.empty() && numbers[0] == std::floor(numbers[0]));
+    if (at != end || numbers.size() != wanted || !whole)
+        fail(TRP_ERROR_ARGUMENT, "setting {}: \"{}\" is not {}", row.name, text,
+             row.type == TRP_TYPE_COLOR ? "a colour of three numbers, as 0.1,0.2,0.3"
+             : row.type == TRP_TYPE_INT ? "a whole number"
+                                        : "a number");
+    for (const double value : numbers)
+        if (value < row.minimum || value > row.maximum)
+            fail(TRP_ERROR_ARGUMENT, "setting {}: {} is not between {} and {}", row.name, value, row.minimum,
+                 row.maximum);
+    return numbers;
+}
+
+}  // namespace
+
+void set_setting(Settings& settings, const std::string& name, const std::string& value) {
+    for (uint32_t i = 0; i < kSettingCount; ++i) {
+        const SettingRow& row = kSettings[i];
+        if (name != row.name) continue;
+        if (row.type == TRP_TYPE_BOOL) {
+            const double number = value == "on" || value == "true" || value == "1";
+            if (number == 0 && value != "off" && value != "false" && value != "0")
+                fail(TRP_ERROR_ARGUMENT, "setting {}: \"{}\" is neither on nor off", name, value);
+            return row.set(settings, &number);
+        }
+        if (row.type == TRP_TYPE_ENUM) {
+            std::string known;
+            for (int k = 0; row.choices[k]; ++k) {
+                const double number = k;
+                if (value == row.choices[k]) return row.set(settings, &number);
+                known += std::string(k ? ", " : "") + row.choices[k];
+            }
+            fail(TRP_ERROR_ARGUMENT, "setting {}: \"{}\" is none of {}", name, value, known);
+        }
+        return row.set(settings, read_numbers(row, value).data());
+    }
+    fail(TRP_ERROR_ARGUMENT, "there is no setting \"{}\"", name);
+}
+
+}  // namespace trp

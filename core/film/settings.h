@@ -1,0 +1,42 @@
+// The settings of a render, and the one table that names, describes, checks and reads them.
+#pragma once
+
+#include <string>
+
+#include "film/pixel_filter.h"
+#include "shading/equation.h"
+
+namespace trp {
+
+struct Settings {
+    uint32_t samples = 16;
+    uint32_t seed = 0;
+    uint32_t threads = 0;
+    bool shadows = true;
+    Specular specular = Specular::phong;
+    Vec3 ambient{0, 0, 0};
+    NormalChoice normals = NormalChoice::mesh;
+    int32_t falloff = -1;  // TRP_FALLOFF_… for all lights; −1: each light's own
+    PixelFilter::Kind filter = PixelFilter::Kind::blackman_harris;
+    float filter_width = 1.5f;
+    bool transparent = false;
+    uint32_t tile_size = 64;
+};
+
+struct SettingRow {
+    int32_t type;  // TRP_TYPE_…
+    const char *name, *label, *description, *unit, *default_value;
+    double minimum, maximum;
+    const char* const* choices;  // null-terminated; ENUM alone
+    const char* methods;
+    // Takes a value that is checked: numbers by component, or the index of the choice.
+    void (*set)(Settings&, const double*);
+};
+
+extern const SettingRow kSettings[];
+extern const uint32_t kSettingCount;
+
+// Sets the named setting from text; throws Error where the name or the value is not of the table.
+void set_setting(Settings& settings, const std::string& name, const std::string& value);
+
+}  // namespace trp

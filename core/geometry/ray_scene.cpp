@@ -1,0 +1,187 @@
+#include "geometry/ray_scene.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <unordered_map>
+
+#include "base/error.h"
+#include "base/parallel.h"
+
+namespace trp {
+namespace {
+
+std::atomic<int64_t> g_embree_bytes{0};
+
+bool count_memory(void*, ssize_t bytes, bool) {
+    g_embree_bytes += bytes;
+    return true;
+}
+
+RTCDevice device() {
+    static const RTCDevice device = [] {
+        const RTCDevice made = rtcNewDevice(nullptr);
+        if (!made)
+            fail(TRP_ERROR_INTERNAL, "Embree could not be started (error {})",
+                 static_cast<int>(rtcGetDeviceError(nullptr)));
+        rtcSetDeviceMemoryMonitorFunction(made, count_memory, nullptr);
+        return made;
+    }();
+    return device;
+}
+
+void check_embree() {
+    const RTCError error = rtcGetDeviceError(device());
+    if (error == RTC_ERROR_OUT_OF_MEMORY)
+        fail(TRP_ERROR_MEMORY, "out of memory while building the ray tracing structure");
+    if (error != RTC_ERROR_NONE) fail(TRP_ERROR_INTERNAL, "Embree reports error {}", static_cast<int>(error));
+}
+
+EmbreeScene new_scene(RTCBuildQuality quality) {
+    EmbreeScene scene(rtcNewScene(device()));
+    check_embree();
+    rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(scene.get(), quality);
+    return scene;
+}
+
+// Triangles over positions and indices that outlive the geometry.
+EmbreeGeometry new_triangles(const Surface& surface, const Vec3* positions) {
+    EmbreeGeometry geometry(rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_TRIANGLE));
+    rtcSetGeometryBuildQuality(geometry.get(), RTC_BUILD_QUALITY_MEDIUM);
+    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions, 0, sizeof(Vec3),
+                               surface.mesh().vertex_count);
+    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, surface.triangle_vertices(),
+                               0, 3 * sizeof(uint32_t), surface.triangle_count());
+    return geometry;
+}
+
+// The tree of a surface that several instances share.
+struct SharedTree {
+    explicit SharedTree(const Surface& surface) : scene(new_scene(RTC_BUILD_QUALITY_MEDIUM)) {
+        const EmbreeGeometry geometry = new_triangles(surface, surface.mesh().positions.data());
+        rtcCommitGeometry(geometry.get());
+        rtcAttachGeometry(scene.get(), geometry.get());
+        rtcCommitScene(scene.get());
+    }
+    EmbreeScene scene;
+};
+
+}  // namespace
+
+// One placement as Embree has it. Never changed: an edit makes a new one.
+class PlacedGeometry {
+  public:
+    PlacedGeometry(const Placement& placement, std::shared_ptr<const SharedTree> tree)
+        : placement(placement), tree(std::move(tree)) {
+        const Surface& surface = *placement.surface;
+        if (this->tree) {
+            geometry.reset(rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_INSTANCE));
+            rtcSetGeometryInstancedScene(geometry.get(), this->tree->scene.get());
+            rtcSetGeometryTransform(geometry.get(), 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, placement.world_from_object.rows);
+        } else {
+            positions = surface.mesh().positions.data();
+            if (!(placement.world_from_object == Affine{})) {
+                moved.reserve(surface.mesh().vertex_count + 1);  // Embree may read 4 bytes past the end
+                moved.resize(surface.mesh().vertex_count);
+                parallel_ranges(moved.size(), 1 << 15, [&](size_t begin, size_t end) {
+                    for (size_t v = begin; v < end; ++v) moved[v] = placement.world_from_object.point(positions[v]);
+                });
+                positions = moved.data();
+            }
+            geometry = new_triangles(surface, positions);
+        }
+        rtcSetGeometryMask(geometry.get(), placement.mask);
+        rtcCommitGeometry(geometry.get());
+    }
+
+    const Placement placement;
+    const std::shared_ptr<const SharedTree> tree;  // null: in world space
+    std::vector<Vec3> moved;
+    const Vec3* positions = nullptr;
+    EmbreeGeometry geometry;
+};
+
+std::shared_ptr<RayScene> RayScene::build(const std::vector<Placement>& placements,
+                                          std::shared_ptr<RayScene> previous) {
+    std::unordered_map<const Surface*, uint32_t> uses;
+    for (const Placement& p : placements) ++uses[p.surface.get()];
+    std::unordered_map<const Surface*, std::shared_ptr<const SharedTree>> trees;
+    std::unordered_map<uint32_t, uint32_t> previous_slots;
+    for (uint32_t slot = 0; previous && slot < previous->slots_.size(); ++slot)
+        if (const auto& placed = previous->slots_[slot]) {
+            previous_slots.emplace(placed->placement.instance, slot);
+            if (placed->tree) trees.emplace(placed->placement.surface.get(), placed->tree);
+        }
+
+    // Slots: kept where the instance was there before, else free ones.
+    std::vector<std::shared_ptr<const PlacedGeometry>> slots(previous ? previous->slots_.size() : 0);
+    std::vector<const Placement*> fresh;
+    auto unchanged = [&](const PlacedGeometry& old, const Placement& p) {
+        return old.placement.surface == p.surface && old.placement.world_from_object == p.world_from_object &&
+               old.placement.mask == p.mask && (old.tree != nullptr) == (uses[p.surface.get()] > 1);
+    };
+    auto place = [&](const Placement& p) {
+        const Surface* surface = p.surface.get();
+        std::shared_ptr<const SharedTree> tree;
+        if (uses[surface] > 1) {
+            auto& shared = trees[surface];
+            if (!shared) shared = std::make_shared<const SharedTree>(*surface);
+            tree = shared;
+        }
+        return std::make_shared<const PlacedGeometry>(p, std::move(tree));
+    };
+    for (const Placement& p : placements) {
+        const auto it = previous_slots.find(p.instance);
+        if (it == previous_slots.end())
+            fresh.push_back(&p);
+        else
+            slots[it->second] = unchanged(*previous->slots_[it->second], p) ? previous->slots_[it->second] : place(p);
+    }
+    uint32_t free_slot = 0;
+    for (const Placement* p : fresh) {
+        while (free_slot < slots.size() && slots[free_slot]) ++free_slot;
+        if (free_slot == slots.size()) slots.emplace_back();
+        slots[free_slot] = place(*p);
+    }
+
+    const auto start = std::chrono::steady_clock::now();
+    const bool in_place = previous && previous.use_count() == 1;
+    auto result = in_place ? std::move(previous) : std::make_shared<RayScene>();
+    if (!in_place) result->scene_ = new_scene(RTC_BUILD_QUALITY_LOW);
+    for (uint32_t slot = 0; slot < std::max(slots.size(), result->slots_.size()); ++slot) {
+        const auto old = slot < result->slots_.size() ? result->slots_[slot] : nullptr;
+        const auto now = slot < slots.size() ? slots[slot] : nullptr;
+        if (old == now) continue;
+        if (old) rtcDetachGeometry(result->scene_.get(), slot);
+        if (now) rtcAttachGeometryByID(result->scene_.get(), now->geometry.get(), slot);
+    }
+    result->slots_ = std::move(slots);
+    result->instanced_ =
+        std::any_of(result->slots_.begin(), result->slots_.end(), [](const auto& s) { return s && s->tree; });
+    rtcCommitScene(result->scene_.get());
+    check_embree();
+    result->build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return result;
+}
+
+const Placement* RayScene::placement(uint32_t slot) const {
+    return slots_[slot] ? &slots_[slot]->placement : nullptr;
+}
+
+const Vec3* RayScene::world_positions(uint32_t slot) const {
+    return slots_[slot]->positions;
+}
+
+uint64_t RayScene::position_bytes() const {
+    uint64_t sum = 0;
+    for (const auto& placed : slots_)
+        if (placed) sum += placed->moved.size() * sizeof(Vec3);
+    return sum;
+}
+
+uint64_t embree_bytes() {
+    return static_cast<uint64_t>(std::max<int64_t>(0, g_embree_bytes.load()));
+}
+
+}  // namespace trp

@@ -1,0 +1,92 @@
+#include "geometry/surface.h"
+
+#include <algorithm>
+
+#include "geometry/normals.h"
+#include "geometry/triangulate.h"
+#include "triptych/triptych.h"
+
+namespace trp {
+
+Surface::Surface(std::shared_ptr<const Mesh> mesh) : mesh_(std::move(mesh)) {
+    for (const Vec3& p : mesh_->positions) bounds_.extend(p);
+    make_triangles();
+
+    const bool any_smooth =
+        std::any_of(mesh_->face_smooth.begin(), mesh_->face_smooth.end(), [](uint8_t s) { return s; });
+    if (!mesh_->normals.empty()) {
+        normal_values_ = unit_normals(*mesh_);
+        normals_.domain =
+            mesh_->normal_domain == TRP_DOMAIN_CORNER ? NormalLayer::Domain::corner : NormalLayer::Domain::vertex;
+        normals_.values = normal_values_.empty() ? mesh_->normals.data() : normal_values_.data();
+    } else if (any_smooth) {
+        const bool sharp = std::any_of(mesh_->edge_flags.begin(), mesh_->edge_flags.end(),
+                                       [](uint8_t flags) { return flags & TRP_EDGE_SHARP; });
+        normal_values_ = sharp ? averaged_corner_normals(*mesh_) : averaged_vertex_normals(*mesh_);
+        normals_.domain = sharp ? NormalLayer::Domain::corner : NormalLayer::Domain::vertex;
+        normals_.values = normal_values_.data();
+    }
+}
+
+void Surface::make_triangles() {
+    const Mesh& mesh = *mesh_;
+    if (mesh.triangles_only()) {
+        triangle_count_ = mesh.face_count();
+        for (uint32_t t = 0; t < triangle_count_; ++t) {
+            const uint32_t* v = &mesh.corner_vertices[3 * t];
+            const Vec3 a = mesh.positions[v[0]], n = (mesh.positions[v[1]] - a).cross(mesh.positions[v[2]] - a);
+            dropped_faces_ += n == Vec3(0, 0, 0);  // they stay in the shared array; no ray can hit them
+        }
+        return;
+    }
+    triangle_vertices_.reserve(3 * mesh.corner_vertices.size());
+    triangle_corners_.reserve(3 * mesh.corner_vertices.size());
+    triangle_faces_.reserve(mesh.corner_vertices.size());
+    std::vector<uint32_t> corners, local;
+    std::vector<Vec3> polygon;
+    for (uint32_t face = 0; face < mesh.face_count(); ++face) {
+        corners.clear();
+        polygon.clear();
+        for (uint32_t c = mesh.face_begin(face); c < mesh.face_end(face); ++c) {
+            if (!corners.empty() && mesh.corner_vertices[corners.back()] == mesh.corner_vertices[c]) continue;
+            corners.push_back(c);
+            polygon.push_back(mesh.positions[mesh.corner_vertices[c]]);
+        }
+        if (corners.size() > 1 && mesh.corner_vertices[corners.front()] == mesh.corner_vertices[corners.back()]) {
+            corners.pop_back();
+            polygon.pop_back();
+        }
+        const Vec3d normal = polygon.size() < 3 ? Vec3d(0, 0, 0) : newell(polygon);
+        if (normal == Vec3d(0, 0, 0)) {
+            ++dropped_faces_;
+            continue;
+        }
+        local.clear();
+        triangulate(polygon, normal, local);
+        for (const uint32_t i : local) {
+            triangle_corners_.push_back(corners[i]);
+            triangle_vertices_.push_back(mesh.corner_vertices[corners[i]]);
+        }
+        triangle_faces_.insert(triangle_faces_.end(), local.size() / 3, face);
+    }
+    triangle_vertices_.shrink_to_fit();
+    triangle_corners_.shrink_to_fit();
+    triangle_faces_.shrink_to_fit();
+    triangle_count_ = static_cast<uint32_t>(triangle_faces_.size());
+}
+
+const NormalLayer& Surface::averaged_normals() const {
+    std::call_once(averaged_once_, [this] {
+        averaged_values_ = welded_vertex_normals(*mesh_);
+        averaged_.domain = NormalLayer::Domain::vertex;
+        averaged_.values = averaged_values_.data();
+    });
+    return averaged_;
+}
+
+uint64_t Surface::bytes() const {
+    return sizeof(uint32_t) * (triangle_vertices_.size() + triangle_corners_.size() + triangle_faces_.size()) +
+           sizeof(Vec3) * (normal_values_.size() + averaged_values_.size());
+}
+
+}  // namespace trp

@@ -1,0 +1,65 @@
+// A mesh made ready to be hit: its triangles and its normals. Made once for a mesh, never changed, shared by snapshots.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "scene/mesh.h"
+
+namespace trp {
+
+struct Bounds {
+    Vec3 min{1e38f, 1e38f, 1e38f}, max{-1e38f, -1e38f, -1e38f};
+    bool empty() const { return min.x > max.x; }
+    void extend(const Vec3& p) {
+        for (int k = 0; k < 3; ++k) min[k] = std::min(min[k], p[k]), max[k] = std::max(max[k], p[k]);
+    }
+};
+
+// Shading normals, unit length, object space: none (flat), one to a vertex, or one to a corner.
+struct NormalLayer {
+    enum class Domain { flat, vertex, corner } domain = Domain::flat;
+    const Vec3* values = nullptr;
+};
+
+class Surface {
+  public:
+    explicit Surface(std::shared_ptr<const Mesh> mesh);
+
+    const Mesh& mesh() const { return *mesh_; }
+    const std::shared_ptr<const Mesh>& mesh_handle() const { return mesh_; }
+    uint32_t triangle_count() const { return triangle_count_; }
+    // Three vertices to a triangle. For a mesh of triangles these are the mesh's own arrays.
+    const uint32_t* triangle_vertices() const {
+        return mesh_->triangles_only() ? mesh_->corner_vertices.data() : triangle_vertices_.data();
+    }
+    // Three corners to a triangle, and its face; null for a mesh of triangles: corners 3t … 3t + 2, face t.
+    const uint32_t* triangle_corners() const { return mesh_->triangles_only() ? nullptr : triangle_corners_.data(); }
+    const uint32_t* triangle_faces() const { return mesh_->triangles_only() ? nullptr : triangle_faces_.data(); }
+    // The mesh's own normals; without them, averages over the smooth faces around a vertex that sharp edges do not
+    // part.
+    const NormalLayer& normals() const { return normals_; }
+    // Averages over all faces around each position, vertices welded where they coincide (shading.normals = averaged).
+    // Made on first use. Any thread.
+    const NormalLayer& averaged_normals() const;
+    const Bounds& bounds() const { return bounds_; }           // of all time samples
+    uint32_t dropped_faces() const { return dropped_faces_; }  // without area
+    uint64_t bytes() const;                                    // held beside the mesh
+
+  private:
+    void make_triangles();
+
+    std::shared_ptr<const Mesh> mesh_;
+    std::vector<uint32_t> triangle_vertices_, triangle_corners_, triangle_faces_;
+    std::vector<Vec3> normal_values_;
+    NormalLayer normals_;
+    Bounds bounds_;
+    uint32_t triangle_count_ = 0, dropped_faces_ = 0;
+    mutable std::once_flag averaged_once_;
+    mutable std::vector<Vec3> averaged_values_;
+    mutable NormalLayer averaged_;
+};
+
+}  // namespace trp

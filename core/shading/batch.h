@@ -1,0 +1,64 @@
+// Batches of shading points and what is known at them, as structures of arrays.
+//
+// A visibility method (rays or projection) writes for each lane which triangle is seen and from where; locate() finds
+// position, normals and material; evaluate() the coefficients of the equation; sample_light() the light that could
+// arrive; add_light() and add_ambient() evaluate the equation. Lanes keep their places throughout: a lane that sees
+// nothing, or is done, has slot kNoSlot. No lane's result depends on another lane.
+#pragma once
+
+#include <cstdint>
+
+#include "base/vec.h"
+
+namespace trp {
+
+inline constexpr int kBatch = 256;  // lanes: a block of 16 × 16 pixels; its arrays fit the nearest caches
+inline constexpr uint32_t kNoSlot = ~0u;
+
+using Lanes = float[kBatch];
+
+struct LaneVec3 {
+    alignas(64) Lanes x, y, z;
+    Vec3 get(int i) const { return {x[i], y[i], z[i]}; }
+    void set(int i, const Vec3& v) { x[i] = v.x, y[i] = v.y, z[i] = v.z; }
+    float* operator[](int k) { return k == 0 ? x : k == 1 ? y : z; }
+    const float* operator[](int k) const { return k == 0 ? x : k == 1 ? y : z; }
+};
+
+struct Points {
+    // Written by the visibility method.
+    alignas(64) uint32_t slot[kBatch];      // the placed surface, or kNoSlot
+    alignas(64) uint32_t triangle[kBatch];  // of the surface
+    alignas(64) Lanes b1, b2;               // barycentric weights of the triangle's second and third vertex
+    alignas(64) Lanes time;                 // 0 to 1 over the time samples
+    LaneVec3 to_viewer;                     // unit
+    // Footprint: where the rays of one pixel to the right, and one pixel up, meet the plane of the triangle, relative
+    // to the position. Needed where textures are (Snapshot::needs_footprint), else unset.
+    LaneVec3 position_dx, position_dy;
+
+    // Written by locate().
+    LaneVec3 position;                      // world space, relative to the snapshot's origin
+    LaneVec3 geometric_normal;              // unit, on the viewer's side
+    LaneVec3 normal;                        // unit shading normal, on the same side of the surface
+    alignas(64) Lanes offset;               // along the geometric normal, clears the surface of itself (rounding bound)
+    alignas(64) uint32_t material[kBatch];  // index into Snapshot::materials
+    alignas(64) uint8_t behind[kBatch];     // 1: the viewer sees the back
+    bool any_program = false;               // a lane's material has nodes
+    bool any_holes = false;                 // a lane's material may have alpha below 1, or one side
+};
+
+struct Coefficients {
+    LaneVec3 emission, ambient, diffuse, specular;
+    alignas(64) Lanes shininess, alpha;
+    LaneVec3 mirror, transmission;
+    alignas(64) Lanes ior;
+};
+
+// Light that would arrive at each point from one light, if nothing were in between.
+struct LightSamples {
+    LaneVec3 direction;          // unit, towards the light
+    alignas(64) Lanes distance;  // to the sampled point; huge for sun and world
+    LaneVec3 light;              // I_L = E⊥/π, divided by the density of the sample; 0 where none can arrive
+};
+
+}  // namespace trp

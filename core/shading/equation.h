@@ -1,0 +1,30 @@
+// The stages of shading a batch, for every method. See batch.h for their order.
+#pragma once
+
+#include "shading/batch.h"
+#include "shading/snapshot.h"
+
+namespace trp {
+
+// Which shading normals: the mesh's own, or averages over all faces around each position.
+enum class NormalChoice { mesh, averaged };
+enum class Specular { none, phong, blinn };
+
+// Positions, normals and materials of the lanes with a slot.
+void locate(const Snapshot& snapshot, NormalChoice choice, Points& points);
+
+// Coefficients of the lanes with a slot; material programs may replace shading normals.
+void evaluate(const Snapshot& snapshot, Points& points, Coefficients& coefficients, ProgramScratch& scratch);
+
+// radiance = I_E + K_A I_A
+void add_ambient(const Points& points, const Coefficients& coefficients, const Vec3& ambient_light, LaneVec3& radiance);
+
+// radiance += (K_D (N·L) + K_S (V·R)^n) S_L I_L; `visibility` is S_L, a fraction where the way is partly blocked.
+// Where `arriving` is given, it gains luminance-free sums of (N·L) I_L, unblocked and blocked, for the shadow pass.
+struct ArrivingLight {
+    LaneVec3 unblocked, blocked;
+};
+void add_light(Specular specular, const Points& points, const Coefficients& coefficients, const LightSamples& samples,
+               const float* visibility, LaneVec3& radiance, ArrivingLight* arriving);
+
+}  // namespace trp

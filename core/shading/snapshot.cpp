@@ -1,0 +1,254 @@
+#include "shading/snapshot.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <set>
+
+#include "base/parallel.h"
+
+namespace trp {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+void warn(Snapshot& snapshot, int32_t code, uint32_t item, std::string text) {
+    snapshot.warnings.push_back({code, item, std::move(text)});
+}
+
+// The origin: the camera's position on a grid so coarse that a walk through a scene rarely moves it, and so fine that
+// floats near it are exact to a tenth of a millimetre. A camera within half a kilometre of the world's origin has 0.
+Vec3d origin_near(const Camera* camera) {
+    constexpr double kGrid = 1024;
+    Vec3d origin(0, 0, 0);
+    if (camera)
+        for (int k = 0; k < 3; ++k) {
+            origin[k] = kGrid * std::round(camera->world_from_camera[0].rows[k][3] / kGrid);
+            if (origin[k] == 0) origin[k] = 0;  // no −0
+        }
+    return origin;
+}
+
+// Every reference between items, before anything is made.
+void check_references(const Scene& scene) {
+    for (const auto& [id, instance] : scene.instances)
+        if (!scene.meshes.find(instance->mesh))
+            fail(TRP_ERROR_ID, "{} shows mesh {}, which the scene does not have",
+                 item_name("instance", id, instance->name), instance->mesh);
+    for (const auto& [id, material] : scene.materials)
+        for (size_t i = 0; i < material->nodes.size(); ++i) {
+            const Node& node = material->nodes[i];
+            if (node.type == TRP_NODE_IMAGE && !scene.textures.find(node.texture))
+                fail(TRP_ERROR_ID, "{}: nodes[{}] reads texture {}, which the scene does not have",
+                     item_name("material", id, material->name), i, node.texture);
+        }
+    if (scene.world.texture != TRP_NO_ID && !scene.textures.find(scene.world.texture))
+        fail(TRP_ERROR_ID, "the world reads texture {}, which the scene does not have", scene.world.texture);
+    if (scene.camera != TRP_NO_ID && !scene.cameras.find(scene.camera))
+        fail(TRP_ERROR_ID, "the scene's camera is {}, which the scene does not have", scene.camera);
+}
+
+void make_materials(const Scene& scene, Snapshot& snapshot, const Snapshot* previous,
+                    std::map<uint32_t, uint32_t>& index_of) {
+    std::map<uint32_t, std::shared_ptr<const Texture>> wanted;
+    auto want = [&](uint32_t id) { wanted.emplace(id, scene.textures.find(id)); };
+    for (const auto& [id, material] : scene.materials)
+        for (const Node& node : material->nodes)
+            if (node.type == TRP_NODE_IMAGE) want(node.texture);
+    if (scene.world.texture != TRP_NO_ID) want(scene.world.texture);
+    snapshot.textures = open_textures(wanted, previous ? previous->textures : TextureSet{}, snapshot.warnings);
+
+    Material grey;  // index 0: what is shown where no material is
+    grey.diffuse.value = grey.ambient.value = Vec3(0.8f, 0.8f, 0.8f);
+    grey.shininess.value = Vec3(30, 30, 30);
+    grey.ior.value = Vec3(1.5f, 1.5f, 1.5f);
+    grey.alpha.value = Vec3(1, 1, 1);
+    snapshot.materials.push_back(compile(grey, snapshot.textures));
+    for (const auto& [id, material] : scene.materials) {
+        index_of.emplace(id, static_cast<uint32_t>(snapshot.materials.size()));
+        snapshot.materials.push_back(compile(*material, snapshot.textures));
+    }
+    const size_t count = snapshot.materials.size();
+    snapshot.material_rows.resize(count * kCoefficientRows);
+    for (size_t m = 0; m < count; ++m) {
+        const CompiledMaterial& material = snapshot.materials[m];
+        for (int row = 0; row < kCoefficientRows; ++row)
+            snapshot.material_rows[row * count + m] = material.constants[row];
+        snapshot.needs_footprint |= material.needs_footprint();
+    }
+}
+
+void make_surfaces(const Scene& scene, Snapshot& snapshot, const Snapshot* previous) {
+    std::set<uint32_t> shown;
+    for (const auto& [id, instance] : scene.instances) shown.insert(instance->mesh);
+    const std::vector<uint32_t> ids(shown.begin(), shown.end());
+    std::vector<std::shared_ptr<const Surface>> made(ids.size());
+    parallel_ranges(ids.size(), 1, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+            auto mesh = scene.meshes.find(ids[i]);
+            if (previous) {
+                const auto it = previous->made_surfaces.find(ids[i]);
+                if (it != previous->made_surfaces.end() && it->second->mesh_handle() == mesh) made[i] = it->second;
+            }
+            if (!made[i]) made[i] = std::make_shared<const Surface>(std::move(mesh));
+        }
+    });
+    for (size_t i = 0; i < ids.size(); ++i) {
+        if (const uint32_t dropped = made[i]->dropped_faces())
+            warn(snapshot, TRP_WARNING_MESH, ids[i],
+                 fmt::format("{}: {} faces without area were left out", item_name("mesh", ids[i], made[i]->mesh().name),
+                             dropped));
+        snapshot.made_surfaces.emplace(ids[i], std::move(made[i]));
+    }
+}
+
+// The materials of an instance by slot, as indices into the snapshot's list.
+std::vector<uint32_t> resolve_slots(Snapshot& snapshot, const std::map<uint32_t, uint32_t>& index_of,
+                                    uint32_t instance_id, const Instance& instance, const Mesh& mesh) {
+    const std::string what = item_name("instance", instance_id, instance.name);
+    uint32_t slots = static_cast<uint32_t>(std::max({mesh.materials.size(), instance.materials.size(), size_t{1}}));
+    if (!mesh.face_materials.empty()) {
+        const uint32_t used = *std::max_element(mesh.face_materials.begin(), mesh.face_materials.end()) + 1u;
+        if (used > slots)
+            warn(snapshot, TRP_WARNING_MATERIAL, instance_id,
+                 fmt::format("{}: faces use material slot {}, and there are {}; grey stands in", what, used - 1,
+                             mesh.materials.size()));
+        slots = std::max(slots, used);
+    }
+    std::vector<uint32_t> out(slots, 0);
+    for (uint32_t slot = 0; slot < slots; ++slot) {
+        uint32_t id = slot < mesh.materials.size() ? mesh.materials[slot] : TRP_NO_ID;
+        if (slot < instance.materials.size() && instance.materials[slot] != TRP_NO_ID) id = instance.materials[slot];
+        if (id == TRP_NO_ID) continue;
+        const auto it = index_of.find(id);
+        if (it == index_of.end())
+            warn(snapshot, TRP_WARNING_MATERIAL, instance_id,
+                 fmt::format("{}: slot {} names material {}, which the scene does not have; grey stands in", what, slot,
+                             id));
+        else
+            out[slot] = it->second;
+    }
+    return out;
+}
+
+PlacedSurface place(const RayScene& rays, uint32_t slot) {
+    PlacedSurface out;
+    const Placement& placement = *rays.placement(slot);
+    const Surface& surface = *placement.surface;
+    out.surface = placement.surface;
+    out.mesh = &surface.mesh();
+    out.baked = rays.world_positions(slot) != nullptr;
+    out.positions = out.baked ? rays.world_positions(slot) : out.mesh->positions.data();
+    out.vertices = surface.triangle_vertices();
+    out.corners = surface.triangle_corners();
+    out.faces = surface.triangle_faces();
+    out.normals = surface.normals();
+    out.face_smooth = out.mesh->face_smooth.empty() ? nullptr : out.mesh->face_smooth.data();
+    out.face_materials = out.mesh->face_materials.empty() ? nullptr : out.mesh->face_materials.data();
+    out.world_from_object = placement.world_from_object;
+    Affine unmoved = placement.world_from_object;
+    for (auto& row : unmoved.rows) row[3] = 0;
+    out.identity = unmoved == Affine{};
+    out.normal_sign = placement.world_from_object.determinant() < 0 ? -1.0f : 1.0f;
+    out.instance = placement.instance;
+    return out;
+}
+
+void fill_info(const Scene& scene, Snapshot& snapshot) {
+    TrpSceneInfo& info = snapshot.info;
+    info.mesh_count = static_cast<uint32_t>(scene.meshes.size());
+    info.instance_count = static_cast<uint32_t>(scene.instances.size());
+    info.material_count = static_cast<uint32_t>(scene.materials.size());
+    info.texture_count = static_cast<uint32_t>(scene.textures.size());
+    info.light_count = static_cast<uint32_t>(scene.lights.size());
+    info.camera_count = static_cast<uint32_t>(scene.cameras.size());
+    Bounds bounds;
+    for (const PlacedSurface& placed : snapshot.surfaces) {
+        if (!placed.mesh) continue;
+        info.face_count += placed.mesh->face_count();
+        info.triangle_count += placed.surface->triangle_count();
+        info.vertex_count += placed.mesh->vertex_count;
+        const Bounds& b = placed.surface->bounds();
+        for (int corner = 0; corner < 8 && !b.empty(); ++corner)
+            bounds.extend(placed.world_from_object.point(
+                {corner & 1 ? b.max.x : b.min.x, corner & 2 ? b.max.y : b.min.y, corner & 4 ? b.max.z : b.min.z}));
+    }
+    for (int k = 0; k < 3; ++k) {
+        const float origin = bounds.empty() ? 0 : static_cast<float>(snapshot.origin[k]);
+        info.bounds_min[k] = bounds.min[k] + origin;
+        info.bounds_max[k] = bounds.max[k] + origin;
+    }
+    for (const auto& [id, mesh] : scene.meshes) info.mesh_bytes += mesh->bytes();
+    info.held_bytes = info.mesh_bytes + snapshot.rays->position_bytes();
+    for (const auto& [id, surface] : snapshot.made_surfaces) info.held_bytes += surface->bytes();
+    info.bvh_bytes = embree_bytes();
+    info.bvh_seconds = snapshot.rays->build_seconds();
+}
+
+}  // namespace
+
+std::shared_ptr<const Snapshot> make_snapshot(const Scene& scene, std::shared_ptr<const Snapshot>& previous) {
+    const auto start = Clock::now();
+    check_references(scene);
+    auto snapshot = std::make_shared<Snapshot>();
+    snapshot->camera = scene.cameras.find(scene.camera);
+    snapshot->origin = origin_near(snapshot->camera.get());
+    snapshot->world = scene.world;
+    std::map<uint32_t, uint32_t> index_of;
+    make_materials(scene, *snapshot, previous.get(), index_of);
+    make_surfaces(scene, *snapshot, previous.get());
+    for (const auto& [id, light] : scene.lights) {
+        Light lamp = *light;
+        for (Affine& m : lamp.world_from_light) m = m.relative_to(snapshot->origin);
+        snapshot->lamps.push_back(std::move(lamp));
+    }
+
+    std::vector<Placement> placements;
+    std::map<uint32_t, std::vector<uint32_t>> slots_of;
+    for (const auto& [id, instance] : scene.instances) {
+        const auto& surface = snapshot->made_surfaces.at(instance->mesh);
+        if (surface->triangle_count() == 0) continue;
+        auto& slots = slots_of[id] = resolve_slots(*snapshot, index_of, id, *instance, surface->mesh());
+        const bool holes =
+            std::any_of(slots.begin(), slots.end(), [&](uint32_t m) { return snapshot->materials[m].has_holes; });
+        snapshot->any_holes |= holes;
+        Placement p;
+        p.instance = id;
+        p.surface = surface;
+        p.world_from_object = instance->world_from_object[0].relative_to(snapshot->origin);
+        p.mask = (instance->visible_camera ? kSeenByCamera : 0u) | (!instance->visible_shadow ? 0u
+                                                                    : holes                   ? kFiltersShadow
+                                                                                              : kCastsShadow);
+        placements.push_back(std::move(p));
+    }
+
+    // Where nobody else holds the last snapshot, its ray scene is taken out of it and changed in place; all that could
+    // fail for the scene's own sake has been checked by now.
+    std::shared_ptr<RayScene> rays;
+    if (previous) {
+        rays = previous->rays;
+        if (previous.use_count() == 1) previous.reset();
+    }
+    snapshot->rays = RayScene::build(placements, std::move(rays));
+
+    snapshot->surfaces.resize(snapshot->rays->slot_count());
+    for (uint32_t slot = 0; slot < snapshot->surfaces.size(); ++slot) {
+        if (!snapshot->rays->placement(slot)) continue;
+        PlacedSurface placed = place(*snapshot->rays, slot);
+        const Instance& instance = *scene.instances.find(placed.instance);
+        placed.slot_materials = std::move(slots_of[placed.instance]);
+        placed.color = instance.color;
+        placed.index = instance.index;
+        snapshot->surfaces[slot] = std::move(placed);
+    }
+    snapshot->lights = make_lights(*snapshot);
+    fill_info(scene, *snapshot);
+    snapshot->info.commit_seconds = seconds_since(start);
+    return snapshot;
+}
+
+}  // namespace trp

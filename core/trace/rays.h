@@ -1,0 +1,49 @@
+// Primary rays of a block and what they hit.
+#pragma once
+
+#include "film/settings.h"
+#include "film/view.h"
+#include "geometry/embree.h"
+#include "shading/batch.h"
+
+namespace trp {
+
+inline constexpr int kPackets = kBatch / 16;  // packets of a block
+
+// The rays of one sample of all pixels of a block. Directions have length 1 along the camera's axis, so that a ray's
+// parameter is depth.
+struct BlockRays {
+    alignas(64) RTCRayHit16 packets[kPackets];
+    LaneVec3 origin, direction;
+};
+
+// What primary rays are made of, once for a render.
+struct RayMaker {
+    View view;
+    PixelFilter filter;
+    uint32_t seed = 0;
+    float footprint = 1;  // of a pixel: what one of many samples stands for
+};
+
+// Numbers of the random sequence for the block's pixels: pair 0 places the sample in its pixel, 1 on the lens; 4 and up
+// belong to the lights.
+void random_pair(uint32_t block_x, uint32_t block_y, uint32_t seed, uint32_t sample, uint32_t pair, float* u, float* v);
+
+void make_primary_rays(const RayMaker& maker, uint32_t block_x, uint32_t block_y, uint32_t sample, BlockRays& rays);
+
+// Traces all packets for the lanes that `active` names, meeting what `mask` names.
+void trace_primary(RTCScene scene, const uint8_t* active, unsigned mask, Coherence coherence, BlockRays& rays);
+
+// Slot, triangle, barycentrics and the direction to the viewer; kNoSlot where nothing was hit or the lane is not
+// active.
+void read_hits(const BlockRays& rays, const uint8_t* active, Points& points);
+
+// The footprint of a pixel at each point that locate() has found (Igehy, "Tracing Ray Differentials", 1999, eq. 10-12).
+void make_footprints(const RayMaker& maker, const BlockRays& rays, Points& points);
+
+// Ray parameters: depth along the camera's axis.
+inline float hit_depth(const BlockRays& rays, int lane) {
+    return rays.packets[lane >> 4].ray.tfar[lane & 15];
+}
+
+}  // namespace trp

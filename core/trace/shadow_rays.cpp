@@ -1,0 +1,150 @@
+#include "trace/shadow_rays.h"
+
+#include <algorithm>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "trace/shadow_rays.cpp"
+#include "hwy/foreach_target.h"
+#include "shading/equation-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace trp::HWY_NAMESPACE {
+
+// Rays of 16 lanes from `first` on, to where the light was sampled. Returns whether any is to be traced.
+bool make_shadow_packet(const Points& points, const LightSamples& samples, int first, RTCRay16& ray, int* valid) {
+    const hn::CappedTag<float, 16> d;
+    const hn::RebindToSigned<decltype(d)> di;
+    const hn::RebindToUnsigned<decltype(d)> du;
+    using V = hn::Vec<decltype(d)>;
+    bool any = false;
+    for (int k = 0; k < 16; k += static_cast<int>(hn::Lanes(d))) {
+        const int i = first + k;
+        const V zero = hn::Zero(d);
+        const Vector3<V> l = load3(d, samples.direction, i), g = load3(d, points.geometric_normal, i),
+                         n = load3(d, points.normal, i);
+        const V light = hn::Add(hn::Load(d, samples.light.x + i),
+                                hn::Add(hn::Load(d, samples.light.y + i), hn::Load(d, samples.light.z + i)));
+        auto wanted = hn::RebindMask(d, hn::Ne(hn::Load(du, points.slot + i), hn::Set(du, kNoSlot)));
+        wanted =
+            hn::And(wanted, hn::And(hn::Gt(light, zero), hn::And(hn::Gt(dot3(g, l), zero), hn::Gt(dot3(n, l), zero))));
+        any |= !hn::AllFalse(d, wanted);
+        hn::Store(hn::BitCast(di, hn::VecFromMask(du, hn::RebindMask(du, wanted))), di, valid + k);
+        const V offset = hn::Load(d, points.offset + i);
+        hn::Store(hn::MulAdd(g.x, offset, hn::Load(d, points.position.x + i)), d, ray.org_x + k);
+        hn::Store(hn::MulAdd(g.y, offset, hn::Load(d, points.position.y + i)), d, ray.org_y + k);
+        hn::Store(hn::MulAdd(g.z, offset, hn::Load(d, points.position.z + i)), d, ray.org_z + k);
+        hn::Store(l.x, d, ray.dir_x + k);
+        hn::Store(l.y, d, ray.dir_y + k);
+        hn::Store(l.z, d, ray.dir_z + k);
+        hn::Store(zero, d, ray.tnear + k);
+        // Short of the light, so that an emitting surface does not shade itself.
+        hn::Store(hn::Mul(hn::Load(d, samples.distance + i), hn::Set(d, 0.9999f)), d, ray.tfar + k);
+        hn::Store(zero, d, ray.time + k);
+        hn::Store(hn::Set(du, kCastsShadow), du, ray.mask + k);
+        hn::Store(hn::Zero(du), du, ray.flags + k);
+        hn::Store(hn::Zero(du), du, ray.id + k);
+    }
+    return any;
+}
+
+void read_shadow_packet(const RTCRay16& ray, const int* valid, float* visibility) {
+    const hn::CappedTag<float, 16> d;
+    const hn::RebindToSigned<decltype(d)> di;
+    for (int k = 0; k < 16; k += static_cast<int>(hn::Lanes(d))) {
+        const auto traced = hn::RebindMask(d, hn::Ne(hn::Load(di, valid + k), hn::Zero(di)));
+        const auto open = hn::And(traced, hn::Ge(hn::Load(d, ray.tfar + k), hn::Zero(d)));
+        hn::Store(hn::IfThenElseZero(open, hn::Set(d, 1.0f)), d, visibility + k);
+    }
+}
+
+}  // namespace trp::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace trp {
+HWY_EXPORT(make_shadow_packet);
+HWY_EXPORT(read_shadow_packet);
+
+namespace {
+
+constexpr int kGreatestLayers = 64;  // of holes in a row along one shadow ray; beyond, it counts as blocked
+
+// Multiplies visibility by what the surfaces with holes on the way let through.
+uint64_t filter_shadows(const Snapshot& snapshot, const Points& points, const LightSamples& samples, float* visibility,
+                        ShadowScratch& shadow, ProgramScratch& program) {
+    Lanes reached;  // ray parameter that each lane has come to
+    std::fill_n(reached, kBatch, 0.0f);
+    uint64_t rays = 0;
+    for (int layer = 0; layer < kGreatestLayers; ++layer) {
+        bool any = false;
+        Points& hits = shadow.points;
+        for (int first = 0; first < kBatch; first += 16) {
+            alignas(64) RTCRayHit16 packet;
+            alignas(64) int valid[16];
+            HWY_DYNAMIC_DISPATCH(make_shadow_packet)(points, samples, first, packet.ray, valid);
+            for (int k = 0; k < 16; ++k) {
+                const int i = first + k;
+                if (!(visibility[i] > 0)) valid[k] = 0;
+                rays += valid[k] != 0;
+                packet.ray.tnear[k] = reached[i];
+                packet.ray.mask[k] = kFiltersShadow;
+                packet.hit.geomID[k] = packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+            }
+            intersect16(snapshot.rays->embree(), valid, packet, Coherence::incoherent);
+            for (int k = 0; k < 16; ++k) {
+                const int i = first + k;
+                const bool hit = valid[k] && packet.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID;
+                hits.slot[i] = !hit                                                 ? kNoSlot
+                               : packet.hit.instID[0][k] != RTC_INVALID_GEOMETRY_ID ? packet.hit.instID[0][k]
+                                                                                    : packet.hit.geomID[k];
+                hits.triangle[i] = packet.hit.primID[k];
+                hits.b1[i] = packet.hit.u[k];
+                hits.b2[i] = packet.hit.v[k];
+                hits.time[i] = points.time[i];
+                hits.to_viewer.set(i, -samples.direction.get(i));
+                hits.position_dx.set(i, {0, 0, 0});
+                hits.position_dy.set(i, {0, 0, 0});
+                // Past the surface by as much as rounding can place it wrong.
+                if (hit) reached[i] = packet.ray.tfar[k] * (1 + 4e-7f);
+                any |= hit;
+            }
+        }
+        if (!any) return rays;
+        locate(snapshot, NormalChoice::mesh, hits);
+        evaluate(snapshot, hits, shadow.coefficients, program);
+        for (int i = 0; i < kBatch; ++i) {
+            if (hits.slot[i] == kNoSlot) continue;
+            const bool one_sided = !snapshot.materials[hits.material[i]].double_sided && hits.behind[i];
+            visibility[i] *= one_sided ? 0 : 1 - shadow.coefficients.alpha[i];
+            if (visibility[i] < 1e-4f) visibility[i] = 0;
+            reached[i] += 2 * hits.offset[i];
+        }
+    }
+    for (int i = 0; i < kBatch; ++i)
+        if (shadow.points.slot[i] != kNoSlot) visibility[i] = 0;
+    return rays;
+}
+
+}  // namespace
+
+uint64_t trace_shadows(const Snapshot& snapshot, const Points& points, const LightSamples& samples, Coherence coherence,
+                       float* visibility, ShadowScratch& shadow, ProgramScratch& program) {
+    uint64_t rays = 0;
+    if (snapshot.rays->occlusion_coherence() == Coherence::incoherent) coherence = Coherence::incoherent;
+    for (int first = 0; first < kBatch; first += 16) {
+        alignas(64) RTCRay16 ray;
+        alignas(64) int valid[16];
+        if (!HWY_DYNAMIC_DISPATCH(make_shadow_packet)(points, samples, first, ray, valid)) {
+            std::fill_n(visibility + first, 16, 0.0f);
+            continue;
+        }
+        for (int k = 0; k < 16; ++k) rays += valid[k] != 0;
+        occluded16(snapshot.rays->embree(), valid, ray, coherence);
+        HWY_DYNAMIC_DISPATCH(read_shadow_packet)(ray, valid, visibility + first);
+    }
+    if (snapshot.any_holes) rays += filter_shadows(snapshot, points, samples, visibility, shadow, program);
+    return rays;
+}
+
+}  // namespace trp
+#endif

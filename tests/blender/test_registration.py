@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Registration, with and without the library."""
+
+import bpy
+import pytest
+import stage
+from triptych import core, panels, properties, settings
+
+
+def test_registers_twice(addon):
+    addon.register()
+    assert hasattr(bpy.types.Scene, "triptych")
+    addon.register()
+
+
+def test_unregister_leaves_nothing(addon):
+    addon.unregister()
+    try:
+        assert not hasattr(bpy.types.Scene, "triptych")
+        assert not hasattr(bpy.types.Material, "triptych")
+        assert not hasattr(bpy.types, "TRIPTYCH_RENDER_PT_method")
+        for panel in panels._all_subclasses(bpy.types.Panel):
+            if not panel.__module__.startswith("triptych"):
+                assert "TRIPTYCH" not in getattr(panel, "COMPAT_ENGINES", ())
+        addon.unregister()  # twice is no error
+    finally:
+        addon.register()
+
+
+def test_without_library(addon, scene, monkeypatch, capfd):
+    """The engine registers, says what is missing, and a render ends with that message and a black picture."""
+    monkeypatch.setenv("TRIPTYCH_LIBRARY", "/nowhere/libtriptych.so")
+    monkeypatch.setattr(core, "_library", None)
+    addon.register()
+    try:
+        assert "/nowhere/libtriptych.so" in core.missing()
+        assert set(properties.METHODS) == {
+            item.identifier for item in scene.triptych.bl_rna.properties["method"].enum_items
+        }
+        scene.render.engine = "TRIPTYCH"
+        stage.plane(scene)
+        stage.camera(scene)
+        pixels = stage.render(scene)
+        assert pixels.shape == (48, 64, 4) and not pixels.any()
+        assert "/nowhere/libtriptych.so" in stage.status()
+    finally:
+        monkeypatch.undo()
+        addon.register()
+
+
+def test_not_a_library(monkeypatch, tmp_path):
+    path = tmp_path / "libtriptych.so"
+    path.write_text("no library")
+    monkeypatch.setenv("TRIPTYCH_LIBRARY", str(path))
+    monkeypatch.setattr(core, "_library", None)
+    assert "cannot be loaded" in core.missing()
+
+
+def test_blender_panels_are_open(addon):
+    for name in ("RENDER_PT_format", "RENDER_PT_output", "DATA_PT_lens", "DATA_PT_camera_dof", "VIEWLAYER_PT_layer"):
+        assert "TRIPTYCH" in getattr(bpy.types, name).COMPAT_ENGINES, name
+
+
+@pytest.mark.library
+def test_every_method_is_selectable(scene):
+    for name, _, _ in core.methods():
+        scene.triptych.method = name
+        assert scene.triptych.method == name
+
+
+@pytest.mark.library
+def test_settings_have_their_defaults(scene):
+    """Each setting of the table is a property with its default, written as the library reads it."""
+    for setting in core.settings():
+        value = getattr(scene.triptych, settings.property_name(setting.name))
+        told = settings.as_text(tuple(value) if setting.type == "COLOR" else value)
+        if setting.type in {"FLOAT", "COLOR"}:
+            expected = [float(number) for number in setting.default.split(",")]
+            given = [float(number) for number in told.split(",")]
+            assert given == pytest.approx(expected * (len(given) // len(expected)), rel=1e-6), setting.name
+        elif setting.type == "BOOL":
+            assert told == ("on" if setting.default in {"on", "true", "1"} else "off"), setting.name
+        else:
+            assert told == setting.default, setting.name
+    assert settings.changed(scene) == {}
