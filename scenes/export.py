@@ -20,6 +20,7 @@ def main(arguments):
     name, output = arguments
     if not (HERE / f"{name}.py").is_file():
         sys.exit(f"export.py: error: no scene {name!r} in {HERE}")
+    sys.dont_write_bytecode = True
     sys.path[:0] = [str(HERE), str(HERE.parent / "blender_addon")]
     bpy.ops.wm.read_factory_settings(use_empty=True)
     importlib.import_module(name).build()

@@ -282,8 +282,8 @@ def lights():
         for name, x, power in (("Nave", 5.0, 42.0), ("Aisle", 8.3, 52.0)):
             common.area_light(f"{name} Light {k + 1}", (x, y, COFFER_TOP - 0.06), (x, y, 0), (1.8, 1.8), power,
                               (1.0, 0.92, 0.80))
-    for name, x in (("Left", 3.35), ("Right", 6.65)):
-        light = common.area_light(f"{name} Uplight", (x, LENGTH / 2, 3.75), (x, LENGTH / 2, 9), (0.3, 12.5), 110,
+    for name, x in (("Left", 2.2), ("Right", 7.8)):
+        light = common.area_light(f"{name} Uplight", (x, LENGTH / 2, 3.5), (x, LENGTH / 2, 9), (0.8, 12.5), 120,
                                   (1.0, 0.93, 0.83))
         light.rotation_euler = (np.pi, 0, 0)
     common.area_light("Vestibule Light", (5.0, 16.0, VESTIBULE_HEIGHT - 0.05), (5.0, 16.0, 0), (1.4, 1.4), 55,

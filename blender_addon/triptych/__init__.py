@@ -11,6 +11,8 @@ The modules, in the order in which data walks through them:
     engine, properties, panels      Blender's side: what is registered
 """
 
+import atexit
+
 bl_info = {
     "name": "Triptych",
     "author": "Triptych contributors",
@@ -34,7 +36,11 @@ _registered = []
 
 def register():
     """Registers everything; a second call without unregister() starts afresh. Needs no library."""
+    import bpy
+
     unregister()
+    if not bpy.app.binary_path:  # bpy as a module does not exit while an engine is registered
+        atexit.register(unregister)
     try:
         for module in _modules():
             _registered.append(module)
@@ -48,3 +54,4 @@ def unregister():
     """Takes back what register() did. Nothing happens where nothing is registered."""
     while _registered:
         _registered.pop().unregister()
+    atexit.unregister(unregister)

@@ -1,5 +1,6 @@
 #include "api/guard.h"
 
+#include <algorithm>
 #include <string>
 
 namespace trp {
@@ -12,6 +13,9 @@ thread_local std::string t_message;
 void set_error_message(const char* text) noexcept {
     try {
         t_message = text;
+        // One line, whatever stands in the names of items.
+        std::replace_if(
+            t_message.begin(), t_message.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
     } catch (...) {
         t_message.clear();
     }

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <memory>
+#include <mutex>
 
 #include "film/tiles.h"
 #include "scene/scene.h"
@@ -21,6 +22,7 @@ struct TrpRender {
     trp::PassList passes;
     std::unique_ptr<trp::Film> film;  // of the last run
     std::atomic<bool> cancelled{false}, running{false};
+    std::mutex state;  // between a run's beginning or end and a cancel from another thread
     TrpStatistics statistics{};
 };
 

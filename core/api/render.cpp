@@ -2,6 +2,7 @@
 #include <sys/resource.h>
 
 #include <chrono>
+#include <utility>
 
 #include "api/guard.h"
 #include "api/handles.h"
@@ -34,13 +35,33 @@ uint64_t peak_memory() {
 // Marks the render as running for as long as it stands.
 struct Running {
     explicit Running(TrpRender& render) : render(render) {
-        if (render.running.exchange(true)) fail(TRP_ERROR_STATE, "the render is running");
+        const std::lock_guard lock(render.state);
+        if (render.running) fail(TRP_ERROR_STATE, "the render is running");
         render.cancelled = false;
+        render.running = true;
     }
-    ~Running() { render.running = false; }
+    ~Running() {
+        const std::lock_guard lock(render.state);
+        render.running = false;
+    }
     Running(const Running&) = delete;
     Running& operator=(const Running&) = delete;
     TrpRender& render;
+};
+
+// The film of a run, in place of that of the run before, which comes back if this one fails.
+struct NewFilm {
+    explicit NewFilm(TrpRender& render) : render(render) {
+        before = std::exchange(render.film, std::make_unique<Film>(render.window, render.passes));
+    }
+    ~NewFilm() {
+        if (!kept) render.film = std::move(before);
+    }
+    NewFilm(const NewFilm&) = delete;
+    NewFilm& operator=(const NewFilm&) = delete;
+    TrpRender& render;
+    std::unique_ptr<Film> before;
+    bool kept = false;
 };
 
 void check_idle(const TrpRender* render) {
@@ -124,11 +145,12 @@ TrpStatus trp_render_run(TrpRender* render, const TrpCallbacks* callbacks) {
         const RenderEvents events =
             callbacks ? events_of(read_struct(callbacks, callback_defaults(), "callbacks")) : RenderEvents{};
         const Running running(*render);
-        render->film = std::make_unique<Film>(render->window, render->passes);
+        NewFilm film(*render);
         RenderJob::Counts counts;
         RenderJob job{render->snapshot, render->settings, render->film.get(), &render->cancelled, &counts};
         const auto start = std::chrono::steady_clock::now();
         const bool whole = kMethods[render->method].run(job, events);
+        film.kept = true;
         TrpStatistics& s = render->statistics = {};
         s.threads = thread_count(render->settings.threads);
         s.render_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -146,7 +168,8 @@ TrpStatus trp_render_run(TrpRender* render, const TrpCallbacks* callbacks) {
 TrpStatus trp_render_cancel(TrpRender* render) {
     return guard([&] {
         check_pointer(render, "render");
-        render->cancelled = true;
+        const std::lock_guard lock(render->state);
+        if (render->running) render->cancelled = true;
         return TRP_OK;
     });
 }

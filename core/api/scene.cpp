@@ -69,7 +69,7 @@ TrpStatus add(TrpScene* scene, Table<Item> Scene::*table, const Desc* desc, cons
     return guard([&] {
         check_pointer(scene, "scene");
         check_pointer(id, "id");
-        (scene->data.*table).add(scene->data.next_id, describe(read_struct(desc, defaults, "desc")));
+        (scene->data.*table).add(scene->data.next_id, describe(read_struct(desc, defaults, "desc"), TRP_NO_ID));
         *id = scene->data.next_id++;
         return TRP_OK;
     });
@@ -80,7 +80,7 @@ TrpStatus replace(TrpScene* scene, Table<Item> Scene::*table, uint32_t id, const
     return guard([&] {
         check_pointer(scene, "scene");
         (scene->data.*table).require(id);
-        (scene->data.*table).replace(id, describe(read_struct(desc, defaults, "desc")));
+        (scene->data.*table).replace(id, describe(read_struct(desc, defaults, "desc"), id));
         return TRP_OK;
     });
 }

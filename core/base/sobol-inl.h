@@ -44,11 +44,11 @@ V laine_karras(DU du, V x, V seed) {
 // Pascal's matrix modulo 2 times the bits of x: the second Sobol' dimension, bits reversed.
 template <class DU, class V = hn::Vec<DU>>
 V pascal(DU du, V x) {
-    x = hn::Xor(x, hn::ShiftLeft<16>(x));
-    x = hn::Xor(x, hn::ShiftLeft<8>(hn::And(x, hn::Set(du, 0x00FF00FFu))));
-    x = hn::Xor(x, hn::ShiftLeft<4>(hn::And(x, hn::Set(du, 0x0F0F0F0Fu))));
-    x = hn::Xor(x, hn::ShiftLeft<2>(hn::And(x, hn::Set(du, 0x33333333u))));
-    return hn::Xor(x, hn::ShiftLeft<1>(hn::And(x, hn::Set(du, 0x55555555u))));
+    x = hn::Xor(x, hn::ShiftRight<16>(x));
+    x = hn::Xor(x, hn::ShiftRight<8>(hn::And(x, hn::Set(du, 0xFF00FF00u))));
+    x = hn::Xor(x, hn::ShiftRight<4>(hn::And(x, hn::Set(du, 0xF0F0F0F0u))));
+    x = hn::Xor(x, hn::ShiftRight<2>(hn::And(x, hn::Set(du, 0xCCCCCCCCu))));
+    return hn::Xor(x, hn::ShiftRight<1>(hn::And(x, hn::Set(du, 0xAAAAAAAAu))));
 }
 
 // A hash of 32 bits (Wellons's lowbias32).

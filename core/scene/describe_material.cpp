@@ -37,10 +37,10 @@ Node describe_node(const std::string& what, const TrpNode& in, uint32_t index) {
 
 }  // namespace
 
-Material describe(const TrpMaterialDesc& desc) {
+Material describe(const TrpMaterialDesc& desc, uint32_t id) {
     Material material;
     material.name = text_of(desc.name);
-    const std::string what = item_name("material", 0, material.name);
+    const std::string what = item_name("material", id, material.name);
     if (desc.node_count > kMaxNodes)
         fail(TRP_ERROR_ARGUMENT, "{}: {} nodes, at most {}", what, desc.node_count, kMaxNodes);
     if (desc.node_count && !desc.nodes)

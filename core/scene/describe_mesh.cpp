@@ -85,6 +85,23 @@ void copy_indices_as(const View& view, Out* out) {
         }
 }
 
+int64_t index_at(const View& view, size_t i, uint32_t k) {
+    const auto read = [&]<class In>(In value) {
+        std::memcpy(&value, view.at(i) + k * sizeof(In), sizeof(In));
+        return static_cast<int64_t>(value);
+    };
+    switch (view.array.format) {
+        case TRP_FORMAT_UINT8:
+            return read(uint8_t{});
+        case TRP_FORMAT_UINT16:
+            return read(uint16_t{});
+        case TRP_FORMAT_INT32:
+            return read(int32_t{});
+        default:
+            return read(uint32_t{});
+    }
+}
+
 // Indices below `limit`.
 template <class Out>
 std::vector<Out> copy_indices(const View& view, uint64_t limit, const char* of_what) {
@@ -110,8 +127,10 @@ std::vector<Out> copy_indices(const View& view, uint64_t limit, const char* of_w
     for (const Out index : out) greatest = std::max(greatest, index);
     if (greatest >= limit) {
         const auto bad = std::find_if(out.begin(), out.end(), [&](Out index) { return index >= limit; });
-        fail(TRP_ERROR_ARGUMENT, "{}: {}[{}] is out of range: there are {} {}", view.mesh, view.field,
-             (bad - out.begin()) / view.components, limit, of_what);
+        const auto at = static_cast<size_t>(bad - out.begin());
+        const size_t element = at / view.components;
+        fail(TRP_ERROR_ARGUMENT, "{}: {}[{}] is {}, which is out of range: there are {} {}", view.mesh, view.field,
+             element, index_at(view, element, static_cast<uint32_t>(at % view.components)), limit, of_what);
     }
     return out;
 }
@@ -160,10 +179,10 @@ uint64_t Mesh::bytes() const {
     return sum;
 }
 
-Mesh describe(const TrpMeshDesc& desc) {
+Mesh describe(const TrpMeshDesc& desc, uint32_t id) {
     Mesh mesh;
     mesh.name = text_of(desc.name);
-    const std::string what = item_name("mesh", 0, mesh.name);
+    const std::string what = item_name("mesh", id, mesh.name);
     check_range(what, "time_count", desc.time_count, 1, 1024);
     mesh.time_count = desc.time_count;
 
@@ -188,7 +207,8 @@ Mesh describe(const TrpMeshDesc& desc) {
         bool triangles = true;
         for (size_t f = 0; f + 1 < mesh.face_offsets.size(); ++f) {
             if (mesh.face_offsets[f] > mesh.face_offsets[f + 1])
-                fail(TRP_ERROR_ARGUMENT, "{}: face_offsets[{}] is less than the one before", what, f + 1);
+                fail(TRP_ERROR_ARGUMENT, "{}: face_offsets[{}] is {}, less than {} before it", what, f + 1,
+                     mesh.face_offsets[f + 1], mesh.face_offsets[f]);
             triangles &= mesh.face_offsets[f + 1] - mesh.face_offsets[f] == 3;
         }
         if (triangles) mesh.face_offsets = {};

@@ -23,14 +23,15 @@ std::vector<Affine> describe_transforms(const float* rows, uint32_t count, const
     return out;
 }
 
-Instance describe(const TrpInstanceDesc& desc) {
+Instance describe(const TrpInstanceDesc& desc, uint32_t id) {
     Instance instance;
     instance.name = text_of(desc.name);
-    const std::string what = item_name("instance", 0, instance.name);
+    const std::string what = item_name("instance", id, instance.name);
     instance.mesh = desc.mesh;
     instance.world_from_object = describe_transforms(desc.world_from_object, desc.time_count, what);
     if (desc.material_count && !desc.materials)
         fail(TRP_ERROR_ARGUMENT, "{}: materials is null, with a count of {}", what, desc.material_count);
+    check_range(what, "material_count", desc.material_count, 0, 65535);
     instance.materials.assign(desc.materials, desc.materials + desc.material_count);
     check_color(what, "color", desc.color);
     instance.color = {desc.color[0], desc.color[1], desc.color[2]};
@@ -40,10 +41,10 @@ Instance describe(const TrpInstanceDesc& desc) {
     return instance;
 }
 
-Texture describe(const TrpTextureDesc& desc) {
+Texture describe(const TrpTextureDesc& desc, uint32_t id) {
     Texture texture;
     texture.name = text_of(desc.name);
-    const std::string what = item_name("texture", 0, texture.name);
+    const std::string what = item_name("texture", id, texture.name);
     const int sources = (desc.path != nullptr) + (desc.file_data != nullptr) + (desc.pixels != nullptr);
     if (sources != 1)
         fail(TRP_ERROR_ARGUMENT, "{}: {} of path, file_data and pixels are given, not one", what, sources);
@@ -78,10 +79,10 @@ Texture describe(const TrpTextureDesc& desc) {
     return texture;
 }
 
-Light describe(const TrpLightDesc& desc) {
+Light describe(const TrpLightDesc& desc, uint32_t id) {
     Light light;
     light.name = text_of(desc.name);
-    const std::string what = item_name("light", 0, light.name);
+    const std::string what = item_name("light", id, light.name);
     check_enum(what, "type", desc.type, TRP_LIGHT_AREA);
     check_enum(what, "falloff", desc.falloff, TRP_FALLOFF_CONSTANT);
     check_enum(what, "shape", desc.shape, TRP_SHAPE_ELLIPSE);
@@ -119,10 +120,10 @@ World describe(const TrpWorldDesc& desc) {
     return world;
 }
 
-Camera describe(const TrpCameraDesc& desc) {
+Camera describe(const TrpCameraDesc& desc, uint32_t id) {
     Camera camera;
     camera.name = text_of(desc.name);
-    const std::string what = item_name("camera", 0, camera.name);
+    const std::string what = item_name("camera", id, camera.name);
     check_enum(what, "type", desc.type, TRP_CAMERA_ORTHOGRAPHIC);
     check_enum(what, "fit", desc.fit, TRP_FIT_VERTICAL);
     check_range(what, "field_of_view", desc.field_of_view, 1e-6, kPi - 1e-4);
@@ -130,6 +131,7 @@ Camera describe(const TrpCameraDesc& desc) {
     check_range(what, "shift[0]", desc.shift[0], -1e6, 1e6);
     check_range(what, "shift[1]", desc.shift[1], -1e6, 1e6);
     check_range(what, "clip_start", desc.clip_start, desc.type == TRP_CAMERA_PERSPECTIVE ? 0 : -kGreatest, kGreatest);
+    check_range(what, "clip_end", desc.clip_end, -kGreatest, kGreatest);
     if (!(desc.clip_end > desc.clip_start))
         fail(TRP_ERROR_ARGUMENT, "{}: clip_end {} is not beyond clip_start {}", what, desc.clip_end, desc.clip_start);
     check_range(what, "aperture_radius", desc.aperture_radius, 0, kGreatest);

@@ -12,6 +12,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "shading/light_samples.cpp"
 #include "hwy/foreach_target.h"
+
 #include "shading/equation-inl.h"
 
 HWY_BEFORE_NAMESPACE();

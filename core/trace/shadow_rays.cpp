@@ -5,6 +5,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "trace/shadow_rays.cpp"
 #include "hwy/foreach_target.h"
+
 #include "shading/equation-inl.h"
 
 HWY_BEFORE_NAMESPACE();

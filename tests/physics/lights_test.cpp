@@ -1,0 +1,221 @@
+// Closed forms: what each kind of light leaves on a plane, with and without something in the way.
+#include "support/abi.h"
+
+namespace trp_test {
+namespace {
+
+constexpr float kRho = 0.6f;
+
+// A white floor seen from above through one pixel's centre at (x, y): its radiance, and what the equation says with K_S
+// 0.
+class OverFloor {
+  public:
+    OverFloor() { scene.object(floor_square(50), scene.diffuse(kRho, kRho, kRho)); }
+    // Radiance at a point of the floor, by many samples of a tiny picture.
+    double radiance(Vec at, int samples = 4096, Settings more = {}) {
+        scene.camera_above(1e-4f, at);
+        more.emplace_back("samples", std::to_string(samples));
+        more.emplace_back("film.filter_width", "0");
+        return mean(render(scene, 1, 1, more));
+    }
+    Scene scene;
+};
+
+TEST(Lights, PointFollowsInverseSquareAndCosine) {
+    OverFloor f;
+    f.scene.light(TRP_LIGHT_POINT, {100, 100, 100}, translation({0, 0, 3}));
+    for (const float x : {0.0f, 1.0f, 4.0f}) {
+        const double d2 = 9 + x * x, expected = kRho / kPi * 100 / d2 * 3 / std::sqrt(d2);
+        EXPECT_NEAR(f.radiance({x, 0, 0}, 1) / expected, 1, 1e-5) << "x = " << x;
+    }
+}
+
+TEST(Lights, FalloffsAgreeAtOneMetre) {
+    // Of a light's own, and of the setting, which overrides it.
+    const double facing = kRho / kPi * 7;
+    struct Case {
+        int32_t own;
+        const char* setting;
+        double power;
+    };
+    for (const Case& c : {Case{TRP_FALLOFF_PHYSICAL, "light", 2}, Case{TRP_FALLOFF_LINEAR, "light", 1},
+                          Case{TRP_FALLOFF_CONSTANT, "light", 0}, Case{TRP_FALLOFF_PHYSICAL, "none", 0},
+                          Case{TRP_FALLOFF_PHYSICAL, "linear", 1}, Case{TRP_FALLOFF_CONSTANT, "quadratic", 2}})
+        for (const float height : {1.0f, 2.0f, 5.0f}) {
+            OverFloor f;
+            f.scene.light(TRP_LIGHT_POINT, {7, 7, 7}, translation({0, 0, height}),
+                          [&](TrpLightDesc& d) { d.falloff = c.own; });
+            EXPECT_NEAR(
+                f.radiance({0, 0, 0}, 1, {{"shading.falloff", c.setting}}) / (facing / std::pow(height, c.power)), 1,
+                1e-5)
+                << c.setting << " at " << height << " m";
+        }
+}
+
+TEST(Lights, PointWithRadiusIsAFacingDisk) {
+    OverFloor f;
+    f.scene.light(TRP_LIGHT_POINT, {10, 10, 10}, translation({0, 0, 2}), [](TrpLightDesc& d) { d.radius = 1; });
+    EXPECT_NEAR(f.radiance({0, 0, 0}) / (kRho / kPi * 10 / (4 + 1)), 1, 2e-3);
+}
+
+TEST(Lights, SpotFadesInItsConeAlone) {
+    OverFloor f;
+    const float full = 1.0f;
+    f.scene.light(TRP_LIGHT_SPOT, {50, 50, 50}, translation({0, 0, 4}), [&](TrpLightDesc& d) {
+        d.angle = full;
+        d.blend = 0.5f;
+    });
+    const double edge = std::cos(full / 2.0), range = (1 - edge) * 0.5;
+    for (const float x : {0.0f, 1.0f, 1.7f, 2.0f, 2.3f}) {
+        const double d2 = 16 + x * x, cosine = 4 / std::sqrt(d2);
+        const double t = std::clamp((cosine - edge) / range, 0.0, 1.0);
+        EXPECT_NEAR(f.radiance({x, 0, 0}, 1), kRho / kPi * 50 / d2 * cosine * t * t * (3 - 2 * t), 1e-5) << "x = " << x;
+    }
+}
+
+TEST(Lights, SunGivesItsIrradiance) {
+    for (const float angle : {0.0f, 0.1f, 0.5f})
+        for (const float slant : {0.0f, 0.6f}) {
+            OverFloor f;
+            f.scene.light(TRP_LIGHT_SUN, {3, 3, 3},
+                          look_at({std::sin(slant), 0, std::cos(slant)}, {0, 0, 0}, {0, 1, 0}),
+                          [&](TrpLightDesc& d) { d.angle = angle; });
+            EXPECT_NEAR(f.radiance({0, 0, 0}) / (kRho / kPi * 3 * std::cos(slant)), 1, 1e-3) << angle << ", " << slant;
+        }
+}
+
+TEST(Lights, RectangleIsItsFormFactor) {
+    // A unit square at 1 m: the point form factors of a parallel square, under its centre and under its corner.
+    OverFloor f;
+    f.scene.light(TRP_LIGHT_AREA, {5, 5, 5}, translation({0, 0, 1}));
+    EXPECT_NEAR(f.radiance({0, 0, 0}) / (kRho * 5 * 0.2394564705 * 1), 1, 2e-3);
+    EXPECT_NEAR(f.radiance({0.5f, 0.5f, 0}) / (kRho * 5 * 0.1385316060), 1, 2e-3);
+}
+
+TEST(Lights, DiskIsItsFormFactor) {
+    OverFloor f;
+    f.scene.light(TRP_LIGHT_AREA, {5, 5, 5}, translation({0, 0, 1}), [](TrpLightDesc& d) {
+        d.shape = TRP_SHAPE_ELLIPSE;
+        d.size[0] = d.size[1] = 1;
+    });
+    EXPECT_NEAR(f.radiance({0, 0, 0}) / (kRho * 5 * 0.25 / 1.25), 1, 2e-3);  // r² / (r² + d²)
+}
+
+TEST(Lights, SpreadKeepsThePowerOfAnAreaLight) {
+    // The flux through a large floor beneath a small light.
+    auto flux = [](float spread) {
+        Scene scene;
+        scene.object(floor_square(50), scene.diffuse(1, 1, 1));
+        scene.light(TRP_LIGHT_AREA, {1000, 1000, 1000}, translation({0, 0, 1}), [&](TrpLightDesc& d) {
+            d.size[0] = d.size[1] = 0.05f;
+            d.angle = spread;
+        });
+        scene.camera_above(40);
+        return mean(render(scene, 400, 400, {{"samples", "16"}})) * 1600 * kPi;
+    };
+    const double all = 1000 * kPi * 0.05 * 0.05;
+    EXPECT_NEAR(flux(static_cast<float>(kPi)) / all, 1, 0.01);
+    EXPECT_NEAR(flux(static_cast<float>(kPi / 2)) / all, 1, 0.01);
+}
+
+TEST(Lights, ConstantWorldIsRadianceTimesReflectance) {
+    // Irradiance πL, by the constant and by a picture of it.
+    OverFloor f;
+    f.scene.world({2, 1, 0.5f});
+    EXPECT_NEAR(f.radiance({0, 0, 0}) / (kRho * 2), 1, 1e-3);
+    const std::vector<float> pixels(8 * 4 * 3, 0.5f);
+    TrpTextureDesc texture;
+    check(trp_texture_desc_init(&texture, sizeof texture));
+    texture.pixels = pixels.data();
+    texture.width = 8, texture.height = 4, texture.channels = 3;
+    uint32_t id = 0;
+    check(trp_texture_add(f.scene, &texture, &id));
+    f.scene.world({2, 2, 2}, [&](TrpWorldDesc& d) { d.texture = id; });
+    EXPECT_NEAR(f.radiance({0, 0, 0}) / (kRho * 0.5 * 2), 1, 3e-3);
+}
+
+TEST(Lights, WorldPictureShinesFromWhereItIs) {
+    // A picture whose one bright pixel lies at +X, +Y up: only walls that face it are lit, and shadows fall away from
+    // it.
+    std::vector<float> pixels(64 * 32 * 3, 0.0f);
+    const uint32_t row = 20, column = 16;  // u = 16.5/64: direction at longitude (1/2 − u)·2π, above the horizon
+    for (int k = 0; k < 3; ++k) pixels[(row * 64 + column) * 3 + static_cast<uint32_t>(k)] = 1000;
+    const double longitude = (0.5 - 16.5 / 64) * 2 * kPi, latitude = (20.5 / 32 - 0.5) * kPi;
+    const double solid_angle = 2 * kPi / 64 * kPi / 32 * std::cos(latitude);
+    Scene scene;
+    TrpTextureDesc texture;
+    check(trp_texture_desc_init(&texture, sizeof texture));
+    texture.pixels = pixels.data();
+    texture.width = 64, texture.height = 32, texture.channels = 3;
+    uint32_t id = 0;
+    check(trp_texture_add(scene, &texture, &id));
+    scene.world({1, 1, 1}, [&](TrpWorldDesc& d) { d.texture = id; });
+    scene.object(floor_square(50), scene.diffuse(kRho, kRho, kRho));
+    // A post on the side of the light shades the point; one on the far side does not.
+    auto shaded = [&](double side) {
+        const float x = static_cast<float>(side * std::cos(longitude)),
+                    y = static_cast<float>(side * std::sin(longitude));
+        const uint32_t post = scene.object(sphere({x, y, 0.5f}, 0.5f, 16));
+        scene.camera_above(1e-4f);
+        const double value = mean(render(scene, 1, 1, {{"samples", "1024"}}));
+        check(trp_instance_remove(scene, post));
+        return value;
+    };
+    const double open = kRho / kPi * 1000 * solid_angle * std::sin(latitude);
+    EXPECT_NEAR(shaded(-1.0) / open, 1, 0.02);
+    EXPECT_LT(shaded(0.8), 0.2 * open);
+}
+
+TEST(Lights, EmittingMeshIsAnAreaLight) {
+    // A square of the radiance of an area light, seen from its front; from behind it shines only where it has two
+    // sides.
+    for (const bool two_sided : {true, false}) {
+        OverFloor f;
+        const uint32_t emitter = f.scene.material([&](TrpMaterialDesc& d) {
+            d.emission = {{5, 5, 5}, TRP_NO_NODE};
+            d.double_sided = two_sided;
+        });
+        const float h = 0.5f;
+        f.scene.object(quad({-h, h, 1}, {h, h, 1}, {h, -h, 1}, {-h, -h, 1}), emitter);
+        const double expected = kRho * 5 * 0.1385316060;
+        EXPECT_NEAR(f.radiance({0.5f + 1e-3f, 0.5f + 1e-3f, 0}) / expected, 1, 5e-3);
+        OverFloor up;
+        up.scene.object(quad({-h, -h, 1}, {h, -h, 1}, {h, h, 1}, {-h, h, 1}),
+                        up.scene.material([&](TrpMaterialDesc& d) {
+                            d.emission = {{5, 5, 5}, TRP_NO_NODE};
+                            d.double_sided = two_sided;
+                        }));
+        EXPECT_NEAR(up.radiance({0.5f + 1e-3f, 0.5f + 1e-3f, 0}) / (two_sided ? expected : 1), two_sided ? 1 : 0, 5e-3);
+    }
+}
+
+TEST(Shadows, RectangleLightHalfCovered) {
+    // A blocker in the light's own plane's half leaves half of the light: by symmetry half the radiance.
+    OverFloor f;
+    f.scene.light(TRP_LIGHT_AREA, {5, 5, 5}, translation({0, 0, 1}));
+    f.scene.object(quad({0, -9, 0.999f}, {9, -9, 0.999f}, {9, 9, 0.999f}, {0, 9, 0.999f}));
+    f.scene.camera(look_at({-2, 0, 0.5f}, {0, 0, 0}), [](TrpCameraDesc& d) { d.field_of_view = 1e-4f; });
+    const double value = mean(render(f.scene, 1, 1, {{"samples", "4096"}}));
+    EXPECT_NEAR(value / (kRho * 5 * 0.2394564705 / 2), 1, 5e-3);
+}
+
+TEST(Shadows, OffMeansLightGoesThrough) {
+    OverFloor f;
+    f.scene.light(TRP_LIGHT_POINT, {100, 100, 100}, translation({0, 0, 3}));
+    f.scene.object(sphere({0, 0, 1.5f}, 0.2f, 16));
+    f.scene.camera(look_at({0, -2, 0.5f}, {0, 0, 0}), [](TrpCameraDesc& d) { d.field_of_view = 1e-4f; });
+    EXPECT_EQ(mean(render(f.scene, 1, 1, {{"samples", "1"}})), 0);
+    EXPECT_NEAR(mean(render(f.scene, 1, 1, {{"samples", "1"}, {"shadows", "off"}})) / (kRho / kPi * 100 / 9), 1, 1e-4);
+}
+
+TEST(Shadows, AlphaLetsItsShareThrough) {
+    OverFloor f;
+    f.scene.light(TRP_LIGHT_POINT, {100, 100, 100}, translation({0, 0, 3}));
+    const uint32_t veil = f.scene.material([](TrpMaterialDesc& d) { d.alpha = {{0.25f, 0, 0}, TRP_NO_NODE}; });
+    for (const float z : {1.0f, 1.5f}) f.scene.object(floor_square(1, z), veil);
+    f.scene.camera(look_at({0, -3, 0.5f}, {0, 0, 0}), [](TrpCameraDesc& d) { d.field_of_view = 1e-4f; });
+    EXPECT_NEAR(mean(render(f.scene, 1, 1, {{"samples", "1"}})) / (kRho / kPi * 100 / 9 * 0.75 * 0.75), 1, 1e-4);
+}
+
+}  // namespace
+}  // namespace trp_test
