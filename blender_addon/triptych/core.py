@@ -591,7 +591,7 @@ class Scene:
         desc = _init("texture_desc", TextureDesc)
         desc.name = texture.name.encode()
         desc.color_space = _COLOR_SPACE[texture.color_space]
-        desc.wrap_u = desc.wrap_v = _WRAP[texture.wrap]
+        desc.wrap_u, desc.wrap_v = (_WRAP[wrap] for wrap in texture.wrap)
         desc.filter = _FILTER[texture.filter]
         if texture.pixels is not None:
             pixels = np.ascontiguousarray(texture.pixels, np.float32)

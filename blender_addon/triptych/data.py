@@ -77,7 +77,7 @@ class Texture:
     file_data: bytes = b""
     pixels: np.ndarray = None
     color_space: str = "auto"  # auto, srgb, linear
-    wrap: str = "repeat"  # repeat, clamp, mirror, black
+    wrap: tuple = ("repeat", "repeat")  # along u and v: repeat, clamp, mirror, black
     filter: str = "smooth"  # smooth, nearest
 
 

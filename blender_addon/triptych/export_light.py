@@ -5,7 +5,7 @@ Of P watts: a point or spot light has the intensity P/4π; a sun's strength is i
 is P/πA (P/4A before 4.0). A node tree multiplies that by an Emission node's colour and strength.
 """
 
-from math import pi
+from math import pi, sin
 
 from . import compat, data
 from .nodes import TreeReader, Unsupported, output_node
@@ -29,13 +29,16 @@ def export_light(light_object, matrix, textures, warn, group=0):
     factor = light.energy * 2 ** getattr(light, "exposure", 0.0)
     if light.type in {"POINT", "SPOT"}:
         result.radius = light.shadow_soft_size
-        factor /= 4 * pi
-        if not _normalized(light) and result.radius > 0:
-            factor *= pi * result.radius**2
+        if _normalized(light):
+            factor /= 4 * pi
+        else:  # the disk has the radiance P/π; a point counts as a disk of 1 m²
+            factor *= result.radius**2 if result.radius > 0 else 1 / pi
     if light.type == "SPOT":
         result.angle, result.blend = light.spot_size, light.spot_blend
     elif light.type == "SUN":
         result.angle = light.angle
+        if not _normalized(light) and light.angle > 0:
+            factor *= pi * sin(light.angle / 2) ** 2
     elif light.type == "AREA":
         factor *= _fill_area(result, light, matrix)
     tint, result.falloff = _emission(light, textures, warn)

@@ -21,8 +21,8 @@ class Textures:
         self._scene = scene
         self._known = {}
 
-    def add(self, image, user=None, wrap="repeat", filtering="smooth"):
-        """The index of the texture for a bpy.types.Image, read as extras_triptych.md's words say."""
+    def add(self, image, user=None, wrap=("repeat", "repeat"), filtering="smooth"):
+        """The index of the texture for a bpy.types.Image; wrap and filtering: as in data.Texture."""
         key = (image.as_pointer(), wrap, filtering)
         if key not in self._known:
             texture = data.Texture(image.name, color_space=self._color_space(image), wrap=wrap, filter=filtering)

@@ -53,7 +53,7 @@ def _environment(result, reader, node, stack, textures):
     if node.projection != "EQUIRECTANGULAR":
         reader.warn_node(node, f"has the projection {node.projection}; EQUIRECTANGULAR is used")
     filtering = "nearest" if node.interpolation == "Closest" else "smooth"
-    result.texture = textures.add(node.image, node.image_user, "repeat", filtering)
+    result.texture = textures.add(node.image, node.image_user, ("repeat", "clamp"), filtering)
     mapping, _, at = reader.source(node.inputs["Vector"], stack)
     if mapping is None:
         return

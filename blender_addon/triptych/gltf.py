@@ -168,7 +168,7 @@ class _Writer:
         self.json["textures"] = [self._texture(texture) for texture in self.scene.textures]
 
     def _texture(self, texture):
-        sampler = (_WRAP[texture.wrap], texture.filter)
+        sampler = (*(_WRAP[wrap] for wrap in texture.wrap), texture.filter)
         if sampler not in self.samplers:
             self.samplers[sampler] = len(self.samplers)
             nearest = texture.filter == "nearest"
@@ -177,10 +177,10 @@ class _Writer:
                     "magFilter": 9728 if nearest else 9729,
                     "minFilter": 9728 if nearest else 9987,
                     "wrapS": sampler[0],
-                    "wrapT": sampler[0],
+                    "wrapT": sampler[1],
                 }
             )
-        extras = {"color_space": texture.color_space, "wrap": [texture.wrap] * 2, "filter": texture.filter}
+        extras = {"color_space": texture.color_space, "wrap": list(texture.wrap), "filter": texture.filter}
         return {
             "name": texture.name,
             "sampler": self.samplers[sampler],

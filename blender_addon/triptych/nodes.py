@@ -202,7 +202,7 @@ def _image(reader, node, output, stack):
         reader.warn_node(node, f"has the projection {node.projection}; FLAT is used")
     wrap = {"REPEAT": "repeat", "EXTEND": "clamp", "CLIP": "black", "MIRROR": "mirror"}[node.extension]
     filtering = "nearest" if node.interpolation == "Closest" else "smooth"
-    texture = reader.textures.add(node.image, node.image_user, wrap, filtering)
+    texture = reader.textures.add(node.image, node.image_user, (wrap, wrap), filtering)
     inputs = ()
     if reader.source(node.inputs["Vector"], stack)[0] is not None:
         inputs = (_as_node(reader, reader.value(node.inputs["Vector"], stack)),)

@@ -119,6 +119,7 @@ def _settings_panel(group):
         "bl_idname": name,
         "bl_label": _GROUP_LABELS.get(group, group.replace("_", " ").title()),
         "bl_context": "render",
+        "bl_order": -9,
         "draw": draw,
         "poll": classmethod(poll),
     }

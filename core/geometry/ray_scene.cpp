@@ -37,10 +37,10 @@ void check_embree() {
     if (error != RTC_ERROR_NONE) fail(TRP_ERROR_INTERNAL, "Embree reports error {}", static_cast<int>(error));
 }
 
-EmbreeScene new_scene(RTCBuildQuality quality) {
+EmbreeScene new_scene(RTCBuildQuality quality, unsigned more_flags = 0) {
     EmbreeScene scene(rtcNewScene(device()));
     check_embree();
-    rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneFlags(scene.get(), static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | more_flags));
     rtcSetSceneBuildQuality(scene.get(), quality);
     return scene;
 }
@@ -54,6 +54,15 @@ EmbreeGeometry new_triangles(const Surface& surface, const Vec3* positions) {
     rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, surface.triangle_vertices(),
                                0, 3 * sizeof(uint32_t), surface.triangle_count());
     return geometry;
+}
+
+// A surface that stands in the scene several times is instanced where copies would be large; small ones are faster to
+// trace as copies in world space.
+bool is_instanced(const Placement& placement, uint32_t uses) {
+    constexpr uint64_t kGreatestCopies = 1 << 16;  // triangles
+    if (uses < 2 || uint64_t{uses} * placement.surface->triangle_count() <= kGreatestCopies) return false;
+    // Rays go into an instance by the inverse of its transform, which a flattened one lacks.
+    return std::abs(placement.world_from_object.determinant()) > 1e-30;
 }
 
 // The tree of a surface that several instances share.
@@ -119,12 +128,12 @@ std::shared_ptr<RayScene> RayScene::build(const std::vector<Placement>& placemen
     std::vector<const Placement*> fresh;
     auto unchanged = [&](const PlacedGeometry& old, const Placement& p) {
         return old.placement.surface == p.surface && old.placement.world_from_object == p.world_from_object &&
-               old.placement.mask == p.mask && (old.tree != nullptr) == (uses[p.surface.get()] > 1);
+               old.placement.mask == p.mask && (old.tree != nullptr) == is_instanced(p, uses[p.surface.get()]);
     };
     auto place = [&](const Placement& p) {
         const Surface* surface = p.surface.get();
         std::shared_ptr<const SharedTree> tree;
-        if (uses[surface] > 1) {
+        if (is_instanced(p, uses[surface])) {
             auto& shared = trees[surface];
             if (!shared) shared = std::make_shared<const SharedTree>(*surface);
             tree = shared;
@@ -148,7 +157,9 @@ std::shared_ptr<RayScene> RayScene::build(const std::vector<Placement>& placemen
     const auto start = std::chrono::steady_clock::now();
     const bool in_place = previous && previous.use_count() == 1;
     auto result = in_place ? std::move(previous) : std::make_shared<RayScene>();
-    if (!in_place) result->scene_ = new_scene(RTC_BUILD_QUALITY_LOW);
+    if (!in_place)
+        result->scene_ =
+            new_scene(RTC_BUILD_QUALITY_LOW, RTC_SCENE_FLAG_DYNAMIC);  // keeps its trees for the next commit
     for (uint32_t slot = 0; slot < std::max(slots.size(), result->slots_.size()); ++slot) {
         const auto old = slot < result->slots_.size() ? result->slots_[slot] : nullptr;
         const auto now = slot < slots.size() ? slots[slot] : nullptr;

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <string>
+#include <type_traits>
 
 #include "base/error.h"
 #include "base/vec.h"
@@ -13,8 +14,11 @@ inline std::string text_of(const char* text) {
     return text ? text : "";
 }
 
-inline void check_range(const std::string& what, const char* field, double value, double low, double high) {
-    if (!(value >= low && value <= high))
+// A template, so that the message has the value in its own type: 0.1, not 0.10000000149011612.
+template <class Number>
+void check_range(const std::string& what, const char* field, Number value, double low, double high) {
+    using Limit = std::conditional_t<std::is_same_v<Number, float>, float, double>;
+    if (!(value >= static_cast<Limit>(low) && value <= static_cast<Limit>(high)))
         fail(TRP_ERROR_ARGUMENT, "{}: {} is {}, which is not between {} and {}", what, field, value, low, high);
 }
 

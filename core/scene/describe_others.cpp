@@ -10,6 +10,8 @@ namespace {
 
 constexpr double kGreatest = std::numeric_limits<float>::max();
 constexpr double kPi = std::numbers::pi;
+// Metres. Beyond these the rays of an odd film would leave the range of Embree, which may abort then (1.8e18).
+constexpr double kGreatestWidth = 1e9, kGreatestAperture = 1e6;
 
 }  // namespace
 
@@ -127,14 +129,14 @@ Camera describe(const TrpCameraDesc& desc, uint32_t id) {
     check_enum(what, "type", desc.type, TRP_CAMERA_ORTHOGRAPHIC);
     check_enum(what, "fit", desc.fit, TRP_FIT_VERTICAL);
     check_range(what, "field_of_view", desc.field_of_view, 1e-6, kPi - 1e-4);
-    check_range(what, "width", desc.width, 1e-9, kGreatest);
+    check_range(what, "width", desc.width, 1e-9, kGreatestWidth);
     check_range(what, "shift[0]", desc.shift[0], -1e6, 1e6);
     check_range(what, "shift[1]", desc.shift[1], -1e6, 1e6);
     check_range(what, "clip_start", desc.clip_start, desc.type == TRP_CAMERA_PERSPECTIVE ? 0 : -kGreatest, kGreatest);
     check_range(what, "clip_end", desc.clip_end, -kGreatest, kGreatest);
     if (!(desc.clip_end > desc.clip_start))
         fail(TRP_ERROR_ARGUMENT, "{}: clip_end {} is not beyond clip_start {}", what, desc.clip_end, desc.clip_start);
-    check_range(what, "aperture_radius", desc.aperture_radius, 0, kGreatest);
+    check_range(what, "aperture_radius", desc.aperture_radius, 0, kGreatestAperture);
     check_range(what, "focus_distance", desc.focus_distance, 1e-9, kGreatest);
     check_range(what, "blade_count", desc.blade_count, 0, 64);
     check_range(what, "blade_rotation", desc.blade_rotation, -kGreatest, kGreatest);
@@ -153,7 +155,8 @@ Camera describe(const TrpCameraDesc& desc, uint32_t id) {
     camera.aperture_radius = desc.aperture_radius;
     camera.focus_distance = desc.focus_distance;
     camera.blade_count = desc.blade_count;
-    camera.blade_rotation = desc.blade_rotation;
+    // Within half a turn: sines of vectors know no more than some thousands.
+    camera.blade_rotation = static_cast<float>(std::remainder(static_cast<double>(desc.blade_rotation), 2 * kPi));
     camera.shutter[0] = desc.shutter[0];
     camera.shutter[1] = desc.shutter[1];
     camera.pixel_aspect = desc.pixel_aspect;

@@ -2,9 +2,9 @@
 //
 // Points and spots with a radius r shine like a disk of that radius that always faces the lit point, of radiance
 // I/(π r²): E = I/(d² + r²) on the axis, as Blender's do. A sun is a cone of directions sampled in proportion to the
-// projected solid angle about its axis, so that a surface facing it gets its irradiance exactly. Areas are sampled
-// uniformly. The world is sampled half by cosine and half uniformly about the shading normal, so that no sample weighs
-// more than four times its radiance.
+// projected solid angle about its axis, so that a surface facing it gets its irradiance exactly. The world is sampled
+// half by cosine and half uniformly about the shading normal, so that no sample weighs more than four times its
+// radiance.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -63,6 +63,37 @@ void basis(D d, const Vector3<V>& n, Vector3<V>& s, Vector3<V>& t) {
     const V b = hn::Mul(hn::Mul(n.x, n.y), a);
     s = {hn::MulAdd(hn::Mul(sign, hn::Mul(n.x, n.x)), a, one), hn::Mul(sign, b), hn::Neg(hn::Mul(sign, n.x))};
     t = {b, hn::MulAdd(hn::Mul(n.y, n.y), a, sign), hn::Neg(n.y)};
+}
+
+// A point of a rectangle chosen uniformly by solid angle (Ureña, Fajardo, King, "An Area-Preserving Parametrization for
+// Spherical Rectangles", 2013). The rectangle spans x0 … x1 by y0 … y1 at height z0 < 0 in a frame about the lit point.
+// Gives the point's x and y, and the solid angle.
+template <class D, class V>
+V spherical_rectangle(D d, V x0, V x1, V y0, V y1, V z0, V u, V v, V& x, V& y) {
+    const V one = hn::Set(d, 1.0f), tiny = hn::Set(d, 1e-12f);
+    const V z2 = hn::Mul(z0, z0);
+    // z components of the normals of the planes through the point and the rectangle's sides.
+    auto side = [&](V a) { return hn::Div(a, hn::Sqrt(hn::Max(hn::MulAdd(a, a, z2), tiny))); };
+    const V n0 = hn::Neg(side(y0)), n1 = side(x1), n2 = side(y1), n3 = hn::Neg(side(x0));
+    auto inner_angle = [&](V a, V b) {
+        return hn::Acos(d, hn::Max(hn::Min(hn::Neg(hn::Mul(a, b)), one), hn::Neg(one)));
+    };
+    const V k = hn::Sub(hn::Sub(hn::Set(d, 2 * std::numbers::pi_v<float>), inner_angle(n2, n3)), inner_angle(n3, n0));
+    const V solid_angle = hn::Max(hn::Sub(hn::Add(inner_angle(n0, n1), inner_angle(n1, n2)), k), hn::Zero(d));
+    const V angle = hn::MulAdd(u, solid_angle, k);
+    const V sine = hn::Sin(d, angle);
+    const V f = hn::Div(hn::MulSub(hn::Cos(d, angle), n0, n2), hn::IfThenElse(hn::Gt(hn::Abs(sine), tiny), sine, tiny));
+    const V c =
+        hn::Min(hn::Div(one, hn::Sqrt(hn::Max(hn::MulAdd(f, f, hn::Mul(n0, n0)), tiny))), hn::Set(d, 0x1.fffffep-1f));
+    const V cu = hn::CopySign(c, f);
+    x = hn::Neg(hn::Div(hn::Mul(cu, z0), hn::Sqrt(hn::Max(hn::NegMulAdd(cu, cu, one), tiny))));
+    x = hn::Min(hn::Max(x, x0), x1);
+    const V r2 = hn::MulAdd(x, x, z2);
+    auto height = [&](V a) { return hn::Div(a, hn::Sqrt(hn::Max(hn::MulAdd(a, a, r2), tiny))); };
+    const V h0 = height(y0), h = hn::MulAdd(v, hn::Sub(height(y1), h0), h0);
+    y = hn::Div(hn::Mul(h, hn::Sqrt(r2)), hn::Sqrt(hn::Max(hn::NegMulAdd(h, h, one), tiny)));
+    y = hn::Min(hn::Max(y, y0), y1);
+    return solid_angle;
 }
 
 // What the light's falloff does beside 1/d².
@@ -134,17 +165,32 @@ void sample_lanes(D d, const ReadyLight& light, int32_t falloff, const Points& p
             break;
         }
         case ReadyLight::Kind::area: {
+            // Where the light is small to the eye, uniformly over its area; a rectangle that is large, by solid angle,
+            // so that what lies close to it is as free of noise as the rest.
+            const V half_x = hn::Set(d, light.half_size[0]), half_y = hn::Set(d, light.half_size[1]);
             V x = hn::MulSub(hn::Set(d, 2.0f), u, one), y = hn::MulSub(hn::Set(d, 2.0f), v, one);
             if (light.ellipse) disk(d, u, v, x, y);
-            const Vector3<V> at = add(broadcast(d, light.position),
-                                      add(scaled(broadcast(d, light.x), hn::Mul(x, hn::Set(d, light.half_size[0]))),
-                                          scaled(broadcast(d, light.y), hn::Mul(y, hn::Set(d, light.half_size[1])))));
-            const Vector3<V> to_light = subtract(at, load3(d, points.position, i));
+            x = hn::Mul(x, half_x), y = hn::Mul(y, half_y);
+            const Vector3<V> axis_x = broadcast(d, light.x), axis_y = broadcast(d, light.y);
+            const Vector3<V> to_centre = subtract(broadcast(d, light.position), load3(d, points.position, i));
+            auto wide = hn::Lt(one, zero);
+            V solid_angle = zero;
+            if (!light.ellipse) {
+                const V cx = dot3(to_centre, axis_x), cy = dot3(to_centre, axis_y), cz = dot3(to_centre, z);
+                V wide_x = zero, wide_y = zero;
+                solid_angle = spherical_rectangle(d, hn::Sub(cx, half_x), hn::Add(cx, half_x), hn::Sub(cy, half_y),
+                                                  hn::Add(cy, half_y), hn::Neg(hn::Abs(cz)), u, v, wide_x, wide_y);
+                wide = hn::Gt(solid_angle, hn::Set(d, 0.02f));
+                x = hn::IfThenElse(wide, hn::Sub(wide_x, cx), x);
+                y = hn::IfThenElse(wide, hn::Sub(wide_y, cy), y);
+            }
+            const Vector3<V> to_light = add(to_centre, add(scaled(axis_x, x), scaled(axis_y, y)));
             distance = hn::Sqrt(dot3(to_light, to_light));
             const V inverse = safe_inverse(d, distance);
             direction = scaled(to_light, inverse);
             const V cosine = hn::Max(dot3(direction, z), zero);  // it shines to −z
-            weight = hn::Mul(hn::Mul(cosine, hn::Set(d, light.area)), hn::Mul(inverse, inverse));
+            const V by_area = hn::Mul(hn::Mul(cosine, hn::Set(d, light.area)), hn::Mul(inverse, inverse));
+            weight = hn::IfThenElse(wide, hn::IfThenElseZero(hn::Gt(cosine, zero), solid_angle), by_area);
             weight = hn::Mul(weight, falloff_factor(d, falloff, distance));
             if (light.spread_tangent > 0) {
                 const V sine = hn::Sqrt(hn::Max(hn::NegMulAdd(cosine, cosine, one), zero));

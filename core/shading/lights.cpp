@@ -145,10 +145,16 @@ LightList make_lights(const Snapshot& snapshot) {
     LightList list;
     for (const Light& lamp : snapshot.lamps)
         if (lamp.emission != Vec3(0, 0, 0)) list.push_back(make_lamp(lamp));
-    for (uint32_t slot = 0; slot < snapshot.surfaces.size(); ++slot) {
+    // By instance, not by slot: slots remember the order of edits.
+    std::vector<uint32_t> slots;
+    for (uint32_t slot = 0; slot < snapshot.surfaces.size(); ++slot)
+        if (snapshot.surfaces[slot].mesh) slots.push_back(slot);
+    std::sort(slots.begin(), slots.end(),
+              [&](uint32_t a, uint32_t b) { return snapshot.surfaces[a].instance < snapshot.surfaces[b].instance; });
+    for (const uint32_t slot : slots) {
         const PlacedSurface& surface = snapshot.surfaces[slot];
-        if (!surface.mesh || std::none_of(surface.slot_materials.begin(), surface.slot_materials.end(),
-                                          [&](uint32_t m) { return snapshot.materials[m].emits; }))
+        if (std::none_of(surface.slot_materials.begin(), surface.slot_materials.end(),
+                         [&](uint32_t m) { return snapshot.materials[m].emits; }))
             continue;
         ReadyLight light = make_surface_light(snapshot, slot);
         if (!light.choice.empty()) list.push_back(std::move(light));

@@ -135,6 +135,27 @@ std::vector<uint32_t> resolve_slots(Snapshot& snapshot, const std::map<uint32_t,
     return out;
 }
 
+// A box about a placed surface, relative to the origin.
+Bounds world_bounds(const Surface& surface, const Affine& world_from_object) {
+    Bounds bounds;
+    const Bounds& b = surface.bounds();
+    for (int corner = 0; corner < 8 && !b.empty(); ++corner)
+        bounds.extend(world_from_object.point(
+            {corner & 1 ? b.max.x : b.min.x, corner & 2 ? b.max.y : b.min.y, corner & 4 ? b.max.z : b.min.z}));
+    return bounds;
+}
+
+// Whether rays can meet what fills these bounds: not a point, and within the numbers that rays can have.
+bool has_extent(const Bounds& bounds) {
+    constexpr float kFarthest = 1e18f;
+    float extent = 0;
+    for (int k = 0; k < 3; ++k) {
+        if (!(std::abs(bounds.min[k]) < kFarthest && std::abs(bounds.max[k]) < kFarthest)) return false;
+        extent = std::max(extent, bounds.max[k] - bounds.min[k]);
+    }
+    return extent > 0;
+}
+
 PlacedSurface place(const RayScene& rays, uint32_t slot) {
     PlacedSurface out;
     const Placement& placement = *rays.placement(slot);
@@ -172,10 +193,9 @@ void fill_info(const Scene& scene, Snapshot& snapshot) {
         info.face_count += placed.mesh->face_count();
         info.triangle_count += placed.surface->triangle_count();
         info.vertex_count += placed.mesh->vertex_count;
-        const Bounds& b = placed.surface->bounds();
-        for (int corner = 0; corner < 8 && !b.empty(); ++corner)
-            bounds.extend(placed.world_from_object.point(
-                {corner & 1 ? b.max.x : b.min.x, corner & 2 ? b.max.y : b.min.y, corner & 4 ? b.max.z : b.min.z}));
+        const Bounds placed_bounds = world_bounds(*placed.surface, placed.world_from_object);
+        bounds.extend(placed_bounds.min);
+        bounds.extend(placed_bounds.max);
     }
     for (int k = 0; k < 3; ++k) {
         const float origin = bounds.empty() ? 0 : static_cast<float>(snapshot.origin[k]);
@@ -223,6 +243,12 @@ std::shared_ptr<const Snapshot> make_snapshot(const Scene& scene, std::shared_pt
         p.mask = (instance->visible_camera ? kSeenByCamera : 0u) | (!instance->visible_shadow ? 0u
                                                                     : holes                   ? kFiltersShadow
                                                                                               : kCastsShadow);
+        if (!has_extent(world_bounds(*surface, p.world_from_object))) {
+            warn(*snapshot, TRP_WARNING_MESH, id,
+                 fmt::format("{} has no extent where it stands and was left out",
+                             item_name("instance", id, instance->name)));
+            continue;
+        }
         placements.push_back(std::move(p));
     }
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <fstream>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -234,9 +235,16 @@ class OiioModule final : public ImageModule {
             spec.attribute("compression", "zip");
             spec.attribute("oiio:ColorSpace", "Linear");
         }
-        if (!output->open(path, spec) || !output->write_image(OIIO::TypeDesc::FLOAT, picture.values.data()) ||
-            !output->close())
+        // Encoded in memory and written here: the encoders do not notice a full disk.
+        OIIO::Filesystem::IOVecOutput bytes;
+        if (!output->set_ioproxy(&bytes) || !output->open(format, spec) ||
+            !output->write_image(OIIO::TypeDesc::FLOAT, picture.values.data()) || !output->close())
             fail(output->geterror());
+        std::ofstream file(path, std::ios::binary);
+        file.write(reinterpret_cast<const char*>(bytes.buffer().data()),
+                   static_cast<std::streamsize>(bytes.buffer().size()));
+        file.close();
+        if (!file) fail("the file could not be written whole");
     }
 
     OIIO::TextureSystem* system_;

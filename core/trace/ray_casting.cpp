@@ -21,6 +21,10 @@ uint64_t nanoseconds(Clock::time_point from, Clock::time_point to) {
     return static_cast<uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(to - from).count());
 }
 
+bool is_world(const ReadyLight& light) {
+    return light.kind == ReadyLight::Kind::world || light.kind == ReadyLight::Kind::world_map;
+}
+
 // What a thread works with; large, so made once for a tile.
 struct Workspace {
     explicit Workspace(const PassList& passes) : sums(passes) {}
@@ -73,15 +77,16 @@ void Caster::shade(uint32_t block_x, uint32_t block_y, uint32_t sample, Coherenc
         sample_light(snapshot, light, job.settings.falloff, w.points, w.u, w.v, w.samples, w.program);
         if (job.settings.shadows && light.cast_shadow) {
             const auto before = Clock::now();
-            const bool spread = light.kind == ReadyLight::Kind::world || light.kind == ReadyLight::Kind::world_map;
-            shadow_rays += trace_shadows(snapshot, w.points, w.samples, spread ? Coherence::incoherent : coherence,
-                                         w.visibility, w.shadow, w.program);
+            shadow_rays +=
+                trace_shadows(snapshot, w.points, w.samples, is_world(light) ? Coherence::incoherent : coherence,
+                              w.visibility, w.shadow, w.program);
             shadow_time += nanoseconds(before, Clock::now());
         } else {
             std::fill_n(w.visibility, kBatch, 1.0f);
         }
-        add_light(job.settings.specular, w.points, w.coefficients, w.samples, w.visibility, w.radiance,
-                  wants_shadow_pass ? &w.arriving : nullptr);
+        // The highlight stands for lights that have a place; the world shows in mirrors.
+        add_light(is_world(light) ? Specular::none : job.settings.specular, w.points, w.coefficients, w.samples,
+                  w.visibility, w.radiance, wants_shadow_pass ? &w.arriving : nullptr);
     }
     job.counts->shadow_rays += shadow_rays;
     job.counts->shadow_time += shadow_time;

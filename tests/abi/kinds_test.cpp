@@ -40,8 +40,8 @@ TYPED_TEST(Items, InitWritesTheCallersBytesAlone) {
     } memory;
     for (const size_t size : {size_t{0}, size_t{3}, size_t{4}, size_t{7}, sizeof(Desc) - 4, size_t{1} << 20}) {
         std::memset(&memory, 0xab, sizeof memory);
-        EXPECT_TRUE(fails(TypeParam::init(&memory.desc, size), TRP_ERROR_ARGUMENT,
-                          {"struct_size", std::to_string(size)}));
+        EXPECT_TRUE(
+            fails(TypeParam::init(&memory.desc, size), TRP_ERROR_ARGUMENT, {"struct_size", std::to_string(size)}));
         EXPECT_EQ(memory.bytes[0], 0xab);
     }
     // An older client's struct.
@@ -101,9 +101,9 @@ TYPED_TEST(Items, IdsOfAnotherKind) {
     Scene scene;
     const auto desc = valid<TypeParam>();
     const uint32_t own = add_valid<TypeParam>(scene);
-    const uint32_t ids[] = {add_valid<MeshKind>(scene),     add_valid<InstanceKind>(scene),
-                            add_valid<TextureKind>(scene),  add_valid<MaterialKind>(scene),
-                            add_valid<LightKind>(scene),    add_valid<CameraKind>(scene)};
+    const uint32_t ids[] = {add_valid<MeshKind>(scene),    add_valid<InstanceKind>(scene),
+                            add_valid<TextureKind>(scene), add_valid<MaterialKind>(scene),
+                            add_valid<LightKind>(scene),   add_valid<CameraKind>(scene)};
     const char* const kinds[] = {"mesh", "instance", "texture", "material", "light", "camera"};
     for (int k = 0; k < 6; ++k) {
         if (std::string(kinds[k]) == TypeParam::kName) continue;

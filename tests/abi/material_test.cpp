@@ -20,7 +20,7 @@ testing::AssertionResult refused(const std::vector<TrpNode>& nodes, const std::f
     desc.node_count = static_cast<uint32_t>(nodes.size());
     if (change) change(desc);
     uint32_t id = 77;
-    words.push_back("material \"Culprit\"");
+    words.emplace_back("material \"Culprit\"");
     return fails(trp_material_add(scene, &desc, &id), TRP_ERROR_ARGUMENT, words);
 }
 
@@ -43,21 +43,19 @@ TEST(Material, Coefficients) {
     for (const Field& field : fields) {
         for (int k = 0; k < field.channels; ++k)
             for (const float bad : {kNaN, kInfinity, -kInfinity, field.beyond})
-                EXPECT_TRUE(refused(
-                    {},
-                    [&](TrpMaterialDesc& d) {
-                        d.ambient_is_diffuse = d.mirror_is_specular = 0;
-                        (d.*field.of).value[k] = bad;
-                    },
-                    {std::string(field.name) + ".value[" + std::to_string(k) + "]"}));
+                EXPECT_TRUE(refused({},
+                                    [&](TrpMaterialDesc& d) {
+                                        d.ambient_is_diffuse = d.mirror_is_specular = 0;
+                                        (d.*field.of).value[k] = bad;
+                                    },
+                                    {std::string(field.name) + ".value[" + std::to_string(k) + "]"}));
         for (const int32_t bad : {-2, 0, 5})
-            EXPECT_TRUE(refused(
-                {},
-                [&](TrpMaterialDesc& d) {
-                    d.ambient_is_diffuse = d.mirror_is_specular = 0;
-                    (d.*field.of).node = bad;
-                },
-                {std::string(field.name) + ".node is " + std::to_string(bad), "0 nodes"}));
+            EXPECT_TRUE(refused({},
+                                [&](TrpMaterialDesc& d) {
+                                    d.ambient_is_diffuse = d.mirror_is_specular = 0;
+                                    (d.*field.of).node = bad;
+                                },
+                                {std::string(field.name) + ".node is " + std::to_string(bad), "0 nodes"}));
     }
 }
 
@@ -92,13 +90,12 @@ TEST(Material, Nodes) {
     EXPECT_TRUE(refused({node(TRP_NODE_IMAGE)}, {}, {"nodes[0]", "texture"}));
     EXPECT_TRUE(refused({}, [](TrpMaterialDesc& d) { d.node_count = 2; }, {"nodes is null", "2"}));
     const TrpNode one = node(TRP_NODE_UV);
-    EXPECT_TRUE(refused(
-        {},
-        [&](TrpMaterialDesc& d) {
-            d.nodes = &one;
-            d.node_count = 100000;
-        },
-        {"100000"}));
+    EXPECT_TRUE(refused({},
+                        [&](TrpMaterialDesc& d) {
+                            d.nodes = &one;
+                            d.node_count = 100000;
+                        },
+                        {"100000"}));
     for (const int32_t normal : {-2, 1, 99})
         EXPECT_TRUE(refused({one}, [&](TrpMaterialDesc& d) { d.normal = normal; },
                             {"normal is " + std::to_string(normal), "1 nodes"}));

@@ -51,7 +51,7 @@ testing::AssertionResult refused(const Change& change, std::vector<std::string> 
     change(mesh);
     Scene scene;
     uint32_t id = 77;
-    words.push_back("mesh \"Culprit\"");
+    words.emplace_back("mesh \"Culprit\"");
     const auto added = fails(trp_mesh_add(scene, &mesh.desc, &id), status, words);
     if (!added || id != 77) return added;
     // A refused exchange leaves the mesh as it was.
@@ -102,9 +102,10 @@ TEST(Mesh, EveryArray) {
     for (const ArrayField& field : kArrays) {
         SCOPED_TRACE(field.name);
         EXPECT_TRUE(refused([&](FullMesh& m) { field.of(m).data = nullptr; }, {field.name, "null"}));
-        if (field.packed > 1)
+        if (field.packed > 1) {
             EXPECT_TRUE(refused([&](FullMesh& m) { field.of(m).stride = field.packed - 1; },
                                 {field.name, "stride is " + std::to_string(field.packed - 1)}));
+        }
         for (const int32_t format : {-1, 5, 1 << 30})
             EXPECT_TRUE(refused([&](FullMesh& m) { field.of(m).format = format; },
                                 {field.name, "format", std::to_string(format)}));
@@ -142,12 +143,19 @@ TEST(Mesh, WrongCounts) {
     // One too few: with one too many the test itself would have to own more.
     for (const char* name : {"normals", "uv_sets[0]", "colors[0]", "edge_flags", "edge_creases", "vertex_creases"})
         for (const ArrayField& field : kArrays)
-            if (std::string(field.name) == name)
+            if (std::string(field.name) == name) {
                 EXPECT_TRUE(refused([&](FullMesh& m) { --field.of(m).count; }, {name, "3 elements", "4"}));
-    EXPECT_TRUE(refused([](FullMesh& m) { m.slots = {0, 0}, m.desc.face_materials = indices(m.slots); },
-                        {"face_materials", "2 elements", "1"}));
-    EXPECT_TRUE(refused([](FullMesh& m) { m.smooth = {0, 0}, m.desc.face_smooth = {m.smooth.data(), 2, 0, 1}; },
-                        {"face_smooth", "2 elements", "1"}));
+            }
+    EXPECT_TRUE(refused(
+        [](FullMesh& m) {
+            m.slots = {0, 0}, m.desc.face_materials = indices(m.slots);
+        },
+        {"face_materials", "2 elements", "1"}));
+    EXPECT_TRUE(refused(
+        [](FullMesh& m) {
+            m.smooth = {0, 0}, m.desc.face_smooth = {m.smooth.data(), 2, 0, 1};
+        },
+        {"face_smooth", "2 elements", "1"}));
     EXPECT_TRUE(refused([](FullMesh& m) { m.desc.edges.count = 0; }, {"edge_flags", "4 elements", "0"}));
     EXPECT_TRUE(refused([](FullMesh& m) { m.desc.normal_domain = TRP_DOMAIN_VERTEX, m.desc.normals.count = 2; },
                         {"normals", "2 elements", "4"}));
@@ -176,16 +184,28 @@ TEST(Mesh, IndicesOutOfRange) {
         {"face_offsets[2] is 1"}));
     EXPECT_TRUE(refused([](FullMesh& m) { m.slots[0] = 65535; }, {"face_materials[0] is 65535"}));
     static const int32_t negative[] = {0, -1, 2, 3};
-    EXPECT_TRUE(refused([](FullMesh& m) { m.desc.corner_vertices = {negative, 4, 0, TRP_FORMAT_INT32}; },
-                        {"corner_vertices[1] is -1"}));
-    EXPECT_TRUE(refused([](FullMesh& m) { m.desc.face_materials = {negative + 1, 1, 0, TRP_FORMAT_INT32}; },
-                        {"face_materials[0] is -1"}));
+    EXPECT_TRUE(refused(
+        [](FullMesh& m) {
+            m.desc.corner_vertices = {negative, 4, 0, TRP_FORMAT_INT32};
+        },
+        {"corner_vertices[1] is -1"}));
+    EXPECT_TRUE(refused(
+        [](FullMesh& m) {
+            m.desc.face_materials = {negative + 1, 1, 0, TRP_FORMAT_INT32};
+        },
+        {"face_materials[0] is -1"}));
     static const uint8_t bytes[] = {0, 1, 2, 200};
-    EXPECT_TRUE(refused([](FullMesh& m) { m.desc.corner_vertices = {bytes, 4, 0, TRP_FORMAT_UINT8}; },
-                        {"corner_vertices[3] is 200"}));
+    EXPECT_TRUE(refused(
+        [](FullMesh& m) {
+            m.desc.corner_vertices = {bytes, 4, 0, TRP_FORMAT_UINT8};
+        },
+        {"corner_vertices[3] is 200"}));
     static const uint16_t shorts[] = {0, 1, 40000, 3};
-    EXPECT_TRUE(refused([](FullMesh& m) { m.desc.corner_vertices = {shorts, 4, 0, TRP_FORMAT_UINT16}; },
-                        {"corner_vertices[2] is 40000"}));
+    EXPECT_TRUE(refused(
+        [](FullMesh& m) {
+            m.desc.corner_vertices = {shorts, 4, 0, TRP_FORMAT_UINT16};
+        },
+        {"corner_vertices[2] is 40000"}));
 }
 
 TEST(Mesh, NotNumbers) {
@@ -236,7 +256,6 @@ TEST(Mesh, StridesAndFormatsAgree) {
     for (size_t i = 0; i < 24; ++i) strided[2 * i] = static_cast<int32_t>(data.corners[i]);
     EXPECT_TRUE(shown_as([&](TrpMeshDesc& d) { d.corner_vertices = {strided.data(), 24, 8, TRP_FORMAT_INT32}; }));
     // The caller's arrays are not kept.
-    EXPECT_TRUE(shown_as([&](TrpMeshDesc&) {}));
     MeshData gone = data;
     TrpMeshDesc desc = Scene::mesh_desc(gone);
     check(trp_mesh_replace(scene, scene.box_mesh, &desc));

@@ -63,8 +63,8 @@ void measure(const Options& options) {
 
     const FlatMeshes meshes = overheard_triangles(recording.runs[0]->packets[0].scene);
     const FlatScene flat(meshes, options.threads);
-    compare_hits(replay(recording, options.threads, Loop::as_recorded, nullptr).hits,
-                 replay(recording, options.threads, Loop::flat, flat.embree()).hits);
+    compare_hits(replay(recording, options.threads, Loop::as_recorded, nullptr, true).hits,
+                 replay(recording, options.threads, Loop::flat, flat.embree(), true).hits);
 
     std::vector<Cost> frames, own_loops, flat_loops;
     std::vector<double> primary, shadow, shading;
@@ -81,20 +81,21 @@ void measure(const Options& options) {
     const std::string& name = options.name;
     const double wall = median_wall(frames), cpu = median_cpu(frames);
     const double own = median_wall(own_loops), of_flat = median_wall(flat_loops);
-    const TrpStatistics statistics = statistics_of(render.get());
-    print_against(name, wall, "s", own < of_flat ? "bare Embree loop" : "bare Embree loop, flat scene",
-                  std::min(own, of_flat), options.goal);
-    print_against(name + ".own_scene", wall, "s", "bare Embree loop, the core's scene", own);
-    print_against(name + ".flat_scene", wall, "s", "bare Embree loop, flat scene", of_flat);
-    print_against(name + ".cpu", cpu, "CPU s", "the faster bare loop",
-                  std::min(median_cpu(own_loops), median_cpu(flat_loops)));
+    const char* const own_peer = "bare Embree loop, the core's scene";
+    const char* const flat_peer = "bare Embree loop, flat scene";
+    print_against(name, wall, "s", own < of_flat ? own_peer : flat_peer, std::min(own, of_flat), options.goal);
+    print_against(name + ".other_scene", wall, "s", own < of_flat ? flat_peer : own_peer, std::max(own, of_flat));
+    print_against(name + ".cpu", cpu, "CPU s", own_peer, median_cpu(own_loops));
+    print_against(name + ".cpu_flat", cpu, "CPU s", flat_peer, median_cpu(flat_loops));
+    const double stages = median(primary) + median(shadow) + median(shading);
     print_value(name + ".primary", median(primary), "thread s");
     print_value(name + ".shadow", median(shadow), "thread s");
     print_value(name + ".shading", median(shading), "thread s");
-    print_value(name + ".rest", cpu - median(primary) - median(shadow) - median(shading), "thread s");
-    print_value(name + ".rays", 1e-6 * static_cast<double>(statistics.primary_rays + statistics.shadow_rays), "Mrays");
-    print_value(name + ".speed", 1e-6 * static_cast<double>(statistics.primary_rays + statistics.shadow_rays) / wall,
-                "Mrays/s");
+    print_value(name + ".rest", wall * options.threads - stages, "thread s");
+    const TrpStatistics statistics = statistics_of(render.get());
+    const double megarays = 1e-6 * static_cast<double>(statistics.primary_rays + statistics.shadow_rays);
+    print_value(name + ".rays", megarays, "Mrays");
+    print_value(name + ".speed", megarays / wall, "Mrays/s");
 }
 
 }  // namespace

@@ -2,11 +2,13 @@
 
 #include <time.h>
 
+#if defined(__SSE__)
+#include <xmmintrin.h>
+#endif
+
 #include <algorithm>
 #include <atomic>
 #include <thread>
-
-#include "base/parallel.h"
 
 namespace trp_bench {
 namespace {
@@ -19,6 +21,13 @@ struct StagedPacket {
     RTCScene scene;
     bool occluded, coherent;
 };
+
+// As in the core's threads: denormals are zero.
+void flush_denormals() {
+#if defined(__SSE__)
+    _mm_setcsr(_mm_getcsr() | 0x8040);
+#endif
+}
 
 double thread_cpu_seconds() {
     timespec t{};
@@ -43,7 +52,7 @@ void unpack(const Packet& packet, Loop loop, RTCScene flat_scene, StagedPacket& 
 // The two calls, with what each version of Embree wants beside the rays.
 class Tracer {
   public:
-    Tracer() {
+    explicit Tracer(bool count_hits) : count_hits_(count_hits) {
         for (const bool coherent : {false, true}) {
 #if TRP_EMBREE == 4
             const auto flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
@@ -58,7 +67,7 @@ class Tracer {
         }
     }
 
-    // Returns how many valid lanes met something.
+    // Returns how many valid lanes met something, or 0 where that is not asked for.
     int trace(const StagedPacket& packet) {
         if (packet.occluded) {
             RTCRay16 ray = packet.ray;
@@ -68,6 +77,7 @@ class Tracer {
             occluded16_(packet.valid, packet.scene, &context_[packet.coherent], &ray);
 #endif
             int hits = 0;
+            if (!count_hits_) return hits;
             for (int k = 0; k < 16; ++k) hits += packet.valid[k] & (ray.tfar[k] < 0);
             return hits;
         }
@@ -81,11 +91,13 @@ class Tracer {
         intersect16_(packet.valid, packet.scene, &context_[packet.coherent], &rays);
 #endif
         int hits = 0;
+        if (!count_hits_) return hits;
         for (int k = 0; k < 16; ++k) hits += packet.valid[k] & (rays.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID);
         return hits;
     }
 
   private:
+    const bool count_hits_;
     Intersect16* const intersect16_ = embree_intersect16();
     Occluded16* const occluded16_ = embree_occluded16();
 #if TRP_EMBREE == 4
@@ -96,10 +108,10 @@ class Tracer {
 #endif
 };
 
-void replay_thread(const Recording& recording, Loop loop, RTCScene flat_scene, std::atomic<size_t>& next,
-                   ReplayResult& result) {
-    const trp::FlushDenormals flush;  // as the core's threads do
-    Tracer tracer;
+void replay_thread(const Recording& recording, Loop loop, RTCScene flat_scene, bool count_hits,
+                   std::atomic<size_t>& next, ReplayResult& result) {
+    flush_denormals();
+    Tracer tracer(count_hits);
     std::vector<StagedPacket> staged(kStaged);
     for (size_t r; (r = next++) < recording.runs.size();) {
         const PacketRun& run = *recording.runs[r];
@@ -119,12 +131,12 @@ void replay_thread(const Recording& recording, Loop loop, RTCScene flat_scene, s
 
 }  // namespace
 
-ReplayResult replay(const Recording& recording, unsigned threads, Loop loop, RTCScene flat_scene) {
+ReplayResult replay(const Recording& recording, unsigned threads, Loop loop, RTCScene flat_scene, bool count_hits) {
     std::atomic<size_t> next{0};
     std::vector<ReplayResult> parts(threads);
     std::vector<std::thread> workers;
     for (ReplayResult& part : parts)
-        workers.emplace_back([&] { replay_thread(recording, loop, flat_scene, next, part); });
+        workers.emplace_back([&] { replay_thread(recording, loop, flat_scene, count_hits, next, part); });
     for (std::thread& worker : workers) worker.join();
     ReplayResult sum;
     for (const ReplayResult& part : parts) {

@@ -16,10 +16,12 @@ enum class Loop {
 
 struct ReplayResult {
     Cost cost;          // wall: of the thread that traced longest; cpu: of all threads
-    uint64_t hits = 0;  // lanes that met something
+    uint64_t hits = 0;  // lanes that met something, where they were counted
 };
 
-// Traces all packets of the recording on `threads` threads. `flat_scene` is used by Loop::flat alone.
-ReplayResult replay(const Recording& recording, unsigned threads, Loop loop, RTCScene flat_scene);
+// Traces all packets of the recording on `threads` threads. `flat_scene` is used by Loop::flat alone. Counting hits
+// takes time: it is for checks, not for figures.
+ReplayResult replay(const Recording& recording, unsigned threads, Loop loop, RTCScene flat_scene,
+                    bool count_hits = false);
 
 }  // namespace trp_bench

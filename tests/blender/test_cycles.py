@@ -32,6 +32,11 @@ def cycles(scene):
     stage.camera(scene, (0, 0, 12), lens=60)
 
 
+def spots_are_comparable():
+    if compat.VERSION < (4, 0):
+        pytest.skip("Cycles of that version dims a spot by the cosine to its axis; Triptych follows the later ones")
+
+
 def compare(scene, tolerance=0.01, least=0.02):
     """Means of both pictures over pixels that are lit in both."""
     scene.render.engine = "CYCLES"
@@ -59,6 +64,7 @@ def test_point(scene, radius):
 
 @pytest.mark.parametrize("size, blend, radius", [(1.2, 0.0, 0), (1.2, 0.15, 0), (1.8, 1.0, 0), (1.2, 0.5, 0.3)])
 def test_spot(scene, size, blend, radius):
+    spots_are_comparable()
     rotation = (20, 10, 0)
     stage.light(scene, "SPOT", (0, 1, 4), 500, rotation, spot_size=size, spot_blend=blend, shadow_soft_size=radius)
     compare(scene)
@@ -99,6 +105,8 @@ def falloff(light, output, strength=1.0):
 @pytest.mark.parametrize("kind", ["POINT", "SPOT", "AREA"])
 @pytest.mark.parametrize("output", ["Quadratic", "Linear", "Constant"])
 def test_falloff(scene, kind, output):
+    if kind == "SPOT":
+        spots_are_comparable()
     lamp = stage.light(scene, kind, (0.3, 0.5, 2), 100)
     if kind == "AREA":
         lamp.data.size, lamp.visible_camera = 0.5, False
@@ -166,14 +174,15 @@ def test_exposure_temperature_and_normalize(scene):
 
 
 @pytest.mark.parametrize("kind", ["POINT", "SPOT", "SUN"])
-def test_not_normalized(scene, kind):
+@pytest.mark.parametrize("size", [0, 0.3])
+def test_not_normalized(scene, kind, size):
     if compat.VERSION < (4, 5):
         pytest.skip("lights are always normalized")
     lamp = stage.light(scene, kind, (0, 0.5, 2), 50, normalize=False)
     if kind == "SUN":
-        lamp.data.angle = 0.3
+        lamp.data.angle = size
     else:
-        lamp.data.shadow_soft_size = 0.4
+        lamp.data.shadow_soft_size = size
     compare(scene)
 
 
@@ -192,8 +201,10 @@ def textured(scene, normal_map):
         tree.links.new(image.outputs["Color"], turn.inputs["Color"])
         tree.links.new(turn.outputs[0], node.inputs["Normal"])
     else:
-        board = ((x // 16 + y // 16) % 2) * 0.6 + 0.2
-        image.image = stage.picture("Board", np.stack([board, x / 64, y / 64], axis=2).astype(np.float32))
+        # Fine, as Cycles blends neighbouring pixels before it makes them linear.
+        y, x = np.mgrid[0:1024, 0:1024] / 1024
+        board = ((x * 4).astype(int) + (y * 4).astype(int)) % 2 * 0.6 + 0.2
+        image.image = stage.picture("Board", np.stack([board, x, y], axis=2).astype(np.float32))
         tree.links.new(image.outputs["Color"], node.inputs["Color"])
 
 
