@@ -4,7 +4,7 @@
 Each shader gives a Surface, a set of coefficients; Mix and Add Shader blend them number by number. Principled BSDF
 (base colour b, metallic m, roughness r, transmission t, reflectance at normal incidence f0):
 
-    K_D = b (1 − m)(1 − t)      K_S = mix(f0 · tint, b, m)      K_T = b (1 − m) t
+    K_D = b (1 − m)(1 − t)      mirror = mix(f0 · tint, b, m)      K_S = mirror · (n + 2)/2      K_T = b (1 − m) t
 
 Roughness becomes Phong's exponent: a microfacet lobe of α = r² has Blinn's exponent 2/α² − 2, and a Phong lobe about
 the mirror direction is as wide as a Blinn lobe of four times its exponent.
@@ -17,7 +17,7 @@ from .nodes import TreeReader, input_of, output_node
 from .program import ONE, ZERO, Value, color, scalar
 
 MAX_SHININESS = 20000.0
-_LEAST_ROUGHNESS_4 = 1e-4
+_LEAST_ROUGHNESS_4 = 1.25e-3  # an exponent of 400: the highlights of lamps stay wide enough to be seen
 
 
 @dataclass
@@ -107,6 +107,13 @@ def shininess(program, roughness):
     return program.multiply(blinn, scalar(0.25))
 
 
+def highlight(program, reflectance, exponent):
+    """K_S of a reflectance: a lamp's highlight holds as much light as its mirror image, and so is (n + 2)/2 times as bright
+    at its middle (the normalization of Phong's lobe), but no brighter than the lamp's light on a white surface."""
+    peak = program.multiply(program.add(exponent, scalar(2)), scalar(0.5))
+    return program.clamp(program.multiply(reflectance, peak))
+
+
 def _reflectance(program, ior):
     """((η − 1) / (η + 1))²"""
     ratio = program.divide(program.subtract(ior, ONE), program.add(ior, ONE))
@@ -133,12 +140,14 @@ def _principled(
     else:
         reflectance = p.multiply(level, scalar(0.08))
     dielectric = p.multiply(base, p.one_minus(metallic))
+    mirror, exponent = p.mix(p.multiply(reflectance, tint), base, metallic), shininess(p, roughness)
     return Surface(
         emission=emission,
         diffuse=p.multiply(dielectric, p.one_minus(transmission)),
-        specular=p.mix(p.multiply(reflectance, tint), base, metallic),
+        specular=highlight(p, mirror, exponent),
+        mirror=mirror,
         transmission=p.multiply(dielectric, transmission),
-        shininess=shininess(p, roughness),
+        shininess=exponent,
         ior=ior,
         alpha=alpha,
         normal=normal,
@@ -224,10 +233,12 @@ class _MaterialReader:
     _ShaderNodeBackground = _ShaderNodeEmission
 
     def _glossy(self, node, stack):
-        roughness = self.program.clamp(self._value(node, stack, "Roughness"))
+        mirror = self._value(node, stack, "Color", "Base Color")
+        exponent = shininess(self.program, self.program.clamp(self._value(node, stack, "Roughness")))
         return Surface(
-            specular=self._value(node, stack, "Color", "Base Color"),
-            shininess=shininess(self.program, roughness),
+            specular=highlight(self.program, mirror, exponent),
+            mirror=mirror,
+            shininess=exponent,
             normal=self._normal(node, stack),
         )
 
@@ -239,9 +250,12 @@ class _MaterialReader:
         p = self.program
         tint, ior = self._value(node, stack, "Color"), self._value(node, stack, "IOR")
         reflectance = _reflectance(p, ior)
+        glossy = self._glossy(node, stack)
+        mirror = p.multiply(tint, reflectance)
         return replace(
-            self._glossy(node, stack),
-            specular=p.multiply(tint, reflectance),
+            glossy,
+            specular=highlight(p, mirror, glossy.shininess),
+            mirror=mirror,
             transmission=p.multiply(tint, p.one_minus(reflectance)),
             ior=ior,
         )
@@ -250,6 +264,7 @@ class _MaterialReader:
         return replace(
             self._glossy(node, stack),
             specular=ZERO,
+            mirror=ZERO,
             transmission=self._value(node, stack, "Color"),
             ior=self._value(node, stack, "IOR"),
         )

@@ -10,7 +10,8 @@ namespace triptych::cli {
 namespace {
 
 constexpr float phong_over_blinn = 0.25f;  // exponents of lobes of about the same width
-constexpr float least_alpha_squared = 1e-4f;
+// An exponent of 400: the highlights of lamps stay wide enough to be seen.
+constexpr float least_alpha_squared = 1.25e-3f;
 
 }  // namespace
 
@@ -89,7 +90,7 @@ Expression PbrMaterial::shininess(const Expression& roughness) {
 }
 
 void PbrMaterial::translate_specular(const tinygltf::Material& material, const Expression& base,
-                                     const Expression& metallic, TrpMaterialDesc& desc) {
+                                     const Expression& metallic, const Expression& exponent, TrpMaterialDesc& desc) {
     float ior = 1.5f;
     const Fields ior_fields = extension(material.extensions, "KHR_materials_ior", where_);
     ior_fields.read("ior", ior);
@@ -112,7 +113,13 @@ void PbrMaterial::translate_specular(const tinygltf::Material& material, const E
     dielectric = program_.clamped(dielectric);
     dielectric = program_.product(
         dielectric, textured(specular, "specularTexture", Expression::of(factor), TRP_COLOR_SPACE_LINEAR, 3));
-    desc.specular = program_.coefficient(program_.mix(dielectric, base, metallic));
+    const Expression reflectance = program_.mix(dielectric, base, metallic);
+    desc.mirror = program_.coefficient(reflectance);
+    desc.mirror_is_specular = 0;
+    // The highlight of a lamp, which holds as much light as its mirror image: (n + 2)/2 times as bright at its middle
+    // (the normalization of Phong's lobe), and no brighter than the lamp's light on a white surface.
+    const Expression peak = program_.product(program_.sum(exponent, Expression::of(2.0f)), Expression::of(0.5f));
+    desc.specular = program_.coefficient(program_.clamped(program_.product(reflectance, peak)));
 }
 
 void PbrMaterial::translate_alpha(const tinygltf::Material& material, const Expression& base, TrpMaterialDesc& desc) {
@@ -185,8 +192,9 @@ void PbrMaterial::translate(const tinygltf::Material& material, bool vertex_colo
     // What is not metal scatters or transmits its colour.
     const Expression body = program_.product(base, program_.one_minus(metallic));
     desc.diffuse = program_.coefficient(program_.product(body, program_.one_minus(transmission)));
-    desc.shininess = program_.coefficient(shininess(roughness));
-    translate_specular(material, base, metallic, desc);
+    const Expression exponent = shininess(roughness);
+    desc.shininess = program_.coefficient(exponent);
+    translate_specular(material, base, metallic, exponent, desc);
 
     if (transmission_factor > 0.0f) {
         desc.transmission = program_.coefficient(program_.product(body, transmission));

@@ -39,7 +39,7 @@ class PbrMaterial {
 
     Expression shininess(const Expression& roughness);
     void translate_specular(const tinygltf::Material& material, const Expression& base, const Expression& metallic,
-                            TrpMaterialDesc& desc);
+                            const Expression& exponent, TrpMaterialDesc& desc);
     void translate_alpha(const tinygltf::Material& material, const Expression& base, TrpMaterialDesc& desc);
     void translate_normal(const tinygltf::Material& material, TrpMaterialDesc& desc);
 

@@ -138,8 +138,11 @@ bool run_tiles(RenderJob& job, const RenderEvents& events, const std::function<v
             mailbox.news.notify_all();
         }
     } catch (...) {
-        cancelled = true;
-        mailbox.news.notify_all();
+        {
+            const std::lock_guard lock(mailbox.mutex);  // so that the driver cannot miss it
+            cancelled = true;
+            mailbox.news.notify_all();
+        }
         driver.join();
         throw;
     }

@@ -9,8 +9,8 @@
 namespace trp {
 
 Surface::Surface(std::shared_ptr<const Mesh> mesh) : mesh_(std::move(mesh)) {
-    for (const Vec3& p : mesh_->positions) bounds_.extend(p);
     make_triangles();
+    for (size_t i = 0; i < 3 * size_t{triangle_count_}; ++i) bounds_.extend(mesh_->positions[triangle_vertices()[i]]);
 
     const bool any_smooth =
         std::any_of(mesh_->face_smooth.begin(), mesh_->face_smooth.end(), [](uint8_t s) { return s; });

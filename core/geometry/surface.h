@@ -44,7 +44,7 @@ class Surface {
     // Averages over all faces around each position, vertices welded where they coincide (shading.normals = averaged).
     // Made on first use. Any thread.
     const NormalLayer& averaged_normals() const;
-    const Bounds& bounds() const { return bounds_; }           // of all time samples
+    const Bounds& bounds() const { return bounds_; }           // of the triangles, at the first time sample
     uint32_t dropped_faces() const { return dropped_faces_; }  // without area
     uint64_t bytes() const;                                    // held beside the mesh
 

@@ -23,7 +23,7 @@ void sample_background(const Snapshot& snapshot, const LaneVec3& directions, con
         if (!wanted[i]) continue;
         const Vec3 d = texture_from_world.vector(directions.get(i));
         u[count] = 0.5f - std::atan2(d.y, d.x) / (2 * kPi);
-        v[count] = 0.5f + std::asin(std::clamp(d.z, -1.0f, 1.0f)) / kPi;
+        v[count] = 0.5f + std::atan2(d.z, std::hypot(d.x, d.y)) / kPi;
         lanes[count++] = i;
     }
     float* const rgba[4] = {r, g, b, a};

@@ -133,14 +133,6 @@ uint32_t Distribution::sample(float& u) const {
     return entry;
 }
 
-Vec3 world_map_radiance(const WorldMap& map, const Vec3& d) {
-    const float u = 0.5f - std::atan2(d.y, d.x) / (2 * kPi), v = 0.5f + std::asin(std::clamp(d.z, -1.0f, 1.0f)) / kPi;
-    const uint32_t x = std::min(static_cast<uint32_t>(u * map.width), map.width - 1);
-    const uint32_t y = std::min(static_cast<uint32_t>(v * map.height), map.height - 1);
-    const float* c = &map.radiance[3 * (static_cast<size_t>(y) * map.width + x)];
-    return {c[0], c[1], c[2]};
-}
-
 LightList make_lights(const Snapshot& snapshot) {
     LightList list;
     for (const Light& lamp : snapshot.lamps)

@@ -75,7 +75,4 @@ LightList make_lights(const Snapshot& snapshot);
 void sample_light(const Snapshot& snapshot, const ReadyLight& light, int32_t falloff, const Points& points,
                   const float* u, const float* v, LightSamples& samples, ProgramScratch& scratch);
 
-// The world's map in a direction, radiance.
-Vec3 world_map_radiance(const WorldMap& map, const Vec3& texture_direction);
-
 }  // namespace trp

@@ -67,7 +67,7 @@ struct Snapshot {
 // where nobody else holds it. Throws Error with `previous` as it was.
 std::shared_ptr<const Snapshot> make_snapshot(const Scene& scene, std::shared_ptr<const Snapshot>& previous);
 
-// Background radiance in a direction (unit), as the camera sees it.
+// Background radiance in directions (of any length), as the camera sees it; for lanes that are `wanted`.
 void sample_background(const Snapshot& snapshot, const LaneVec3& directions, const uint8_t* wanted, LaneVec3& radiance);
 
 }  // namespace trp

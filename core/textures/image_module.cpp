@@ -2,14 +2,13 @@
 
 #include <dlfcn.h>
 
-#include <memory>
-
 #include "base/error.h"
 
 namespace trp {
 
 ImageModule& image_module() {
-    static const std::unique_ptr<ImageModule> module = [] {
+    // Never destroyed: the libraries that it stands on may be gone when a program's statics are.
+    static ImageModule* const module = [] {
         Dl_info info{};
         dladdr(reinterpret_cast<const void*>(&trp_version), &info);
         std::string path = info.dli_fname ? info.dli_fname : "";
@@ -18,7 +17,7 @@ ImageModule& image_module() {
         if (!library) fail(TRP_ERROR_FILE, "the image library could not be loaded: {}", dlerror());
         const auto create = reinterpret_cast<CreateImageModule>(dlsym(library, kCreateImageModule));
         if (!create) fail(TRP_ERROR_FILE, "{} is not an image library of Triptych", path);
-        return std::unique_ptr<ImageModule>(create());
+        return create();
     }();
     return *module;
 }

@@ -46,18 +46,19 @@ TEST(Material, ConstantsNeedNoNodes) {
     EXPECT_EQ(material.name, "paint");
     EXPECT_TRUE(material.nodes.empty());
     expect_color(evaluate(material, material.desc.diffuse), 0.6f, 0.3f, 0.15f);
-    expect_color(evaluate(material, material.desc.specular), 0.03f + 0.2f, 0.03f + 0.1f, 0.03f + 0.05f);
-    // alpha = 1/4, alpha² = 1/16: Blinn 30, Phong 7.5
+    expect_color(evaluate(material, material.desc.mirror), 0.03f + 0.2f, 0.03f + 0.1f, 0.03f + 0.05f);
+    // alpha = 1/4, alpha² = 1/16: Blinn 30, Phong 7.5, whose peak is (7.5 + 2)/2 times the mirror; at most 1
     EXPECT_NEAR(material.desc.shininess.value[0], 7.5f, 1e-4f);
+    expect_color(evaluate(material, material.desc.specular), 1, 0.13f * 4.75f, 0.08f * 4.75f);
     EXPECT_EQ(material.desc.double_sided, 1);
-    EXPECT_EQ(material.desc.mirror_is_specular, 1);
+    EXPECT_EQ(material.desc.mirror_is_specular, 0);
 }
 
 TEST(Material, ExtremesOfRoughness) {
     for (const float roughness : {0.0f, 1.0f}) {
         MaterialScene builder({{"pbrMetallicRoughness", {{"roughnessFactor", roughness}}}}, false);
         const Loaded loaded = load(builder);
-        EXPECT_NEAR(loaded->materials[0].desc.shininess.value[0], roughness == 0.0f ? 19998.0f / 4.0f : 0.0f, 0.1f);
+        EXPECT_NEAR(loaded->materials[0].desc.shininess.value[0], roughness == 0.0f ? 399.5f : 0.0f, 0.1f);
     }
 }
 
@@ -75,7 +76,7 @@ TEST(Material, TexturedMetalRoughness) {
     const float base[3] = {0.8f * 0.5f * 0.5f, 0.5f * 0.5f, 0.25f * 0.5f};
     expect_color(evaluate(material, material.desc.diffuse, image, color), base[0] * 0.75f, base[1] * 0.75f,
                  base[2] * 0.75f);
-    expect_color(evaluate(material, material.desc.specular, image, color), 0.03f + base[0] * 0.25f,
+    expect_color(evaluate(material, material.desc.mirror, image, color), 0.03f + base[0] * 0.25f,
                  0.03f + base[1] * 0.25f, 0.03f + base[2] * 0.25f);
     EXPECT_NEAR(evaluate(material, material.desc.shininess, image, color)[0], 7.5f, 1e-3f);
     EXPECT_EQ(loaded->textures[0].desc.color_space, TRP_COLOR_SPACE_SRGB);
