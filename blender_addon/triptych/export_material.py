@@ -108,8 +108,8 @@ def shininess(program, roughness):
 
 
 def highlight(program, reflectance, exponent):
-    """K_S of a reflectance: a lamp's highlight holds as much light as its mirror image, and so is (n + 2)/2 times as bright
-    at its middle (the normalization of Phong's lobe), but no brighter than the lamp's light on a white surface."""
+    """K_S of a reflectance: a lamp's highlight holds as much light as its mirror image, and so is (n + 2)/2 times as
+    bright at its middle (the normalization of Phong's lobe), but no brighter than its light on a white surface."""
     peak = program.multiply(program.add(exponent, scalar(2)), scalar(0.5))
     return program.clamp(program.multiply(reflectance, peak))
 

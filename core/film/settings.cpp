@@ -26,7 +26,8 @@ const SettingRow kSettings[] = {
     {TRP_TYPE_BOOL, "shadows", "Shadows", "Lights are blocked by what stands in their way", "", "on", 0, 1, nullptr,
      "*", [](Settings& s, const double* v) { s.shadows = *v != 0; }},
     {TRP_TYPE_ENUM, "shading.specular", "Specular",
-     "The highlight of lights: none, Phong's (V·R)^n, or Blinn's (N·H)^n, which is about twice as wide for the same n",
+     "The highlight of lights (not of the world): none, Phong's (V·R)^n, or Blinn's (N·H)^n, which is about twice as "
+     "wide for the same n",
      "", "phong", 0, 0, kSpeculars, "*", [](Settings& s, const double* v) { s.specular = static_cast<Specular>(*v); }},
     {TRP_TYPE_COLOR, "shading.ambient", "Ambient light",
      "I_A, which reaches every surface from everywhere; the world's own light is sampled and needs none", "W/(m² sr)",

@@ -109,7 +109,9 @@ def test_principled_constants(scene):
     base = np.array([0.8, 0.4, 0.2])
     assert result.diffuse == pytest.approx(base * 0.75 * 0.5)
     assert result.transmission == pytest.approx(base * 0.75 * 0.5)
-    assert result.specular == pytest.approx(reflectance(1.5, 0.4) * 0.75 + base * 0.25)
+    mirror = reflectance(1.5, 0.4) * 0.75 + base * 0.25
+    assert result.mirror == pytest.approx(mirror)
+    assert result.specular == pytest.approx(np.minimum(mirror * (7.5 + 2) / 2, 1))
     assert result.shininess == pytest.approx((2 / 0.5**4 - 2) / 4) and result.ior == pytest.approx(1.5)
     assert result.material.nodes == []
 
@@ -119,7 +121,7 @@ def test_principled_emission_and_alpha(scene):
     assert result.emission == pytest.approx([3, 1.5, 0]) and result.alpha == pytest.approx(0.25)
 
 
-@pytest.mark.parametrize("roughness, shininess", [(0, (2e4 - 2) / 4), (1, 0)])
+@pytest.mark.parametrize("roughness, shininess", [(0, 399.5), (1, 0)])
 def test_roughness_ends(scene, roughness, shininess):
     assert Exported(principled(roughness=roughness)[0]).shininess == pytest.approx(shininess)
 
@@ -150,15 +152,15 @@ def test_metallic_and_transmission_from_images(scene):
     assert result.diffuse == pytest.approx(base * (1 - metallic) * 0.5)
     assert result.transmission == pytest.approx(base * (1 - metallic) * 0.5)
     ior = compat.principled_socket(node, "ior").default_value
-    assert result.specular == pytest.approx(reflectance(ior) * (1 - metallic) + base * metallic)
+    assert result.mirror == pytest.approx(reflectance(ior) * (1 - metallic) + base * metallic)
 
 
 def test_glossy_glass_and_transparent(scene):
     glossy = Exported(stage.material(shader="ShaderNodeBsdfGlossy", Color=(0.5, 0.6, 0.7), Roughness=0.2)[0])
-    assert glossy.specular == pytest.approx([0.5, 0.6, 0.7]) and not glossy.diffuse.any()
+    assert glossy.mirror == pytest.approx([0.5, 0.6, 0.7]) and not glossy.diffuse.any()
     assert glossy.shininess == pytest.approx((2 / 0.2**4 - 2) / 4, rel=1e-5)
     glass = Exported(stage.material(shader="ShaderNodeBsdfGlass", Color=(1.0, 1.0, 1.0), IOR=1.5)[0])
-    assert glass.specular == pytest.approx([0.04] * 3) and glass.transmission == pytest.approx([0.96] * 3)
+    assert glass.mirror == pytest.approx([0.04] * 3) and glass.transmission == pytest.approx([0.96] * 3)
     assert glass.ior == pytest.approx(1.5) and not glass.material.thin
     clear = Exported(stage.material(shader="ShaderNodeBsdfTransparent", Color=(1.0, 1.0, 1.0))[0])
     assert clear.alpha == 0

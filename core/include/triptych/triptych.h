@@ -166,7 +166,8 @@ enum {                     /* bits of edge_flags */
  * Faces that have fewer than three different vertices, or no area, are left out with a warning. */
 typedef struct TrpMeshDesc {
     uint32_t struct_size;
-    uint32_t time_count;      /* time samples of the positions, evenly spaced over the shutter; default 1 */
+    uint32_t time_count;      /* time samples of the positions, evenly spaced over the shutter; default 1. Methods
+                                 without motion blur (ray_casting) show the first */
     const char* name;         /* UTF-8, for messages; may be null */
     TrpArray positions;       /* FLOAT32 × 3; count = vertices · time_count, sample after sample */
     TrpArray face_offsets;    /* indices; faces + 1 ascending corner offsets from 0; not given: all faces are triangles */
@@ -384,10 +385,10 @@ typedef struct TrpCameraDesc {
     uint32_t time_count;
     int32_t fit;                    /* TRP_FIT_… */
     float field_of_view;            /* perspective: full angle across the fitted side; default 0.69 */
-    float width;                    /* orthographic: metres across the fitted side; default 6 */
+    float width;                    /* orthographic: metres across the fitted side, at most 1e9; default 6 */
     float shift[2];                 /* of the picture, in fitted sides; default 0 */
     float clip_start, clip_end;     /* along −Z; defaults 0.01 and 1000 */
-    float aperture_radius;          /* of the lens; 0: a pinhole. Default 0 */
+    float aperture_radius;          /* of the lens, at most 1e6 m; 0: a pinhole. Default 0 */
     float focus_distance;           /* along −Z, > 0; default 10 */
     uint32_t blade_count;           /* 0 to 2: a round aperture; else a polygon */
     float blade_rotation;           /* radians */
@@ -485,7 +486,8 @@ TRP_API TrpStatus trp_callbacks_init(TrpCallbacks* callbacks, size_t struct_size
 /* Renders, and returns when the picture is whole, cancelled (TRP_CANCELLED) or failed. May be called again.
  * `callbacks` may be null. */
 TRP_API TrpStatus trp_render_run(TrpRender* render, const TrpCallbacks* callbacks);
-/* Makes a running trp_render_run return within 100 ms; without effect where none runs. Any thread. */
+/* Makes a running trp_render_run return within 100 ms; without effect where none runs. Any thread,
+ * but not a signal handler. */
 TRP_API TrpStatus trp_render_cancel(TrpRender* render);
 
 /* Copies a rectangle of a pass into the caller's buffer: width · height · channels floats, packed, row 0 at the bottom.
