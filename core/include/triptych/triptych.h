@@ -26,6 +26,7 @@
  * Versions    descriptor structs start with struct_size. The init function of each writes the defaults into the
  *             struct_size bytes that the caller has, so that a program built against an older header keeps working.
  *             All enumerations are int32_t with the values written here, which never change. */
+/* clang-format off: the columns are laid by hand */
 #ifndef TRIPTYCH_TRIPTYCH_H
 #define TRIPTYCH_TRIPTYCH_H
 
