@@ -26,7 +26,8 @@
  * Versions    descriptor structs start with struct_size. The init function of each writes the defaults into the
  *             struct_size bytes that the caller has, so that a program built against an older header keeps working.
  *             All enumerations are int32_t with the values written here, which never change. */
-/* clang-format off: the columns are laid by hand */
+/* The columns are laid by hand. */
+/* clang-format off */
 #ifndef TRIPTYCH_TRIPTYCH_H
 #define TRIPTYCH_TRIPTYCH_H
 
