@@ -26,7 +26,7 @@ ReadyLight make_lamp(const Light& lamp) {
     light.y = unit_or(m.column(1), {0, 1, 0});
     light.emission = lamp.emission;
     light.cast_shadow = lamp.cast_shadow;
-    light.visible_camera = lamp.visible_camera;
+    light.visible_camera = lamp.visible_camera && lamp.type == TRP_LIGHT_AREA;
     light.falloff = lamp.falloff;
     light.group = lamp.group;
     light.radius = lamp.radius;
@@ -131,6 +131,24 @@ uint32_t Distribution::sample(float& u) const {
     const auto entry = static_cast<uint32_t>(it - cdf_.begin() - 1);
     u = std::clamp((u - cdf_[entry]) / std::max(probability(entry), 1e-30f), 0.0f, 0x1.fffffep-1f);
     return entry;
+}
+
+SeenLight see_area_light(const ReadyLight& light, const Vec3& origin, const Vec3& direction) {
+    const float slope = direction.dot(light.z);
+    if (!(slope > 0)) return {};  // it shines to −z
+    const float t = (light.position - origin).dot(light.z) / slope;
+    if (!(t > 0)) return {};
+    const Vec3 offset = origin + direction * t - light.position;
+    const float x = offset.dot(light.x) / light.half_size[0], y = offset.dot(light.y) / light.half_size[1];
+    const bool within = light.ellipse ? x * x + y * y <= 1 : std::abs(x) <= 1 && std::abs(y) <= 1;
+    if (!within) return {};
+    float share = 1;
+    if (light.spread_tangent > 0) {
+        const float cosine = slope / direction.length();
+        const float tangent = std::sqrt(std::max(1 - cosine * cosine, 0.0f)) / cosine;
+        share = std::max(light.spread_tangent - tangent, 0.0f) * light.spread_scale;
+    }
+    return {t, light.emission * share};
 }
 
 LightList make_lights(const Snapshot& snapshot) {

@@ -156,6 +156,23 @@ bool has_extent(const Bounds& bounds) {
     return extent > 0;
 }
 
+// Says what has several time samples, of which the first is shown.
+void warn_of_motion(const Scene& scene, Snapshot& snapshot) {
+    auto check = [&](int32_t code, const char* kind, uint32_t id, const std::string& name, size_t samples) {
+        if (samples > 1)
+            warn(snapshot, code, id,
+                 fmt::format("{} has {} time samples; the first is shown", item_name(kind, id, name), samples));
+    };
+    for (const auto& [id, mesh] : scene.meshes) check(TRP_WARNING_MESH, "mesh", id, mesh->name, mesh->time_count);
+    for (const auto& [id, instance] : scene.instances)
+        check(TRP_WARNING_MESH, "instance", id, instance->name, instance->world_from_object.size());
+    for (const auto& [id, light] : scene.lights)
+        check(TRP_WARNING_LIGHT, "light", id, light->name, light->world_from_light.size());
+    if (snapshot.camera)
+        check(TRP_WARNING_CAMERA, "camera", scene.camera, snapshot.camera->name,
+              snapshot.camera->world_from_camera.size());
+}
+
 PlacedSurface place(const RayScene& rays, uint32_t slot) {
     PlacedSurface out;
     const Placement& placement = *rays.placement(slot);
@@ -218,6 +235,7 @@ std::shared_ptr<const Snapshot> make_snapshot(const Scene& scene, std::shared_pt
     snapshot->camera = scene.cameras.find(scene.camera);
     snapshot->origin = origin_near(snapshot->camera.get());
     snapshot->world = scene.world;
+    warn_of_motion(scene, *snapshot);
     std::map<uint32_t, uint32_t> index_of;
     make_materials(scene, *snapshot, previous.get(), index_of);
     make_surfaces(scene, *snapshot, previous.get());

@@ -46,13 +46,14 @@ struct Caster {
     const RenderJob& job;
     const Snapshot& snapshot;
     RayMaker maker;
-    bool wants_shadow_pass;
+    bool wants_shadow_pass, sees_lights;
 
     void tile(const TileWork& work) const;
     void block(uint32_t block_x, uint32_t block_y, const TileWork& work, Workspace& w) const;
     void layers(uint32_t block_x, uint32_t block_y, uint32_t sample, bool first_sample, Workspace& w) const;
     void shade(uint32_t block_x, uint32_t block_y, uint32_t sample, Coherence coherence, Workspace& w) const;
     void add_background(Workspace& w) const;
+    void add_seen_lights(Workspace& w) const;
     void write_surface(bool first_sample, uint8_t* seen, Workspace& w) const;
 };
 
@@ -134,6 +135,30 @@ void Caster::write_surface(bool first_sample, uint8_t* seen, Workspace& w) const
     }
 }
 
+// Area lights that the camera sees, in front of what was hit: a lane that meets one is done.
+void Caster::add_seen_lights(Workspace& w) const {
+    float* const rgba[4] = {w.sums.channel(kCombined, 0), w.sums.channel(kCombined, 1), w.sums.channel(kCombined, 2),
+                            w.sums.channel(kCombined, 3)};
+    for (int i = 0; i < kBatch; ++i) {
+        if (!w.active[i]) continue;
+        const RTCRay16& ray = w.rays.packets[i >> 4].ray;
+        SeenLight nearest{ray.tfar[i & 15], {}};
+        bool any = false;
+        for (const ReadyLight& light : snapshot.lights) {
+            if (!light.visible_camera) continue;
+            const SeenLight seen = see_area_light(light, w.rays.origin.get(i), w.rays.direction.get(i));
+            if (!(seen.t > ray.tnear[i & 15] && seen.t < nearest.t)) continue;
+            nearest = seen;
+            any = true;
+        }
+        if (!any) continue;
+        for (int c = 0; c < 3; ++c) rgba[c][i] += w.throughput[i] * nearest.radiance[c];
+        rgba[3][i] += w.throughput[i];
+        w.active[i] = 0;
+        w.points.slot[i] = kNoSlot;
+    }
+}
+
 void Caster::add_background(Workspace& w) const {
     sample_background(snapshot, w.rays.direction, w.missed, w.background);
     float* const rgba[4] = {w.sums.channel(kCombined, 0), w.sums.channel(kCombined, 1), w.sums.channel(kCombined, 2),
@@ -163,6 +188,7 @@ void Caster::layers(uint32_t block_x, uint32_t block_y, uint32_t sample, bool fi
         const auto before = Clock::now();
         trace_primary(snapshot.rays->embree(), w.active, kSeenByCamera, coherence, w.rays);
         read_hits(w.rays, w.active, w.points);
+        if (sees_lights) add_seen_lights(w);
         primary_time += nanoseconds(before, Clock::now());
         bool any_missed = false, any_hit = false;
         for (int i = 0; i < kBatch; ++i) {
@@ -225,7 +251,12 @@ bool ray_casting(RenderJob& job, const RenderEvents& events) {
                         RayMaker{make_view(*job.snapshot->camera, job.snapshot->origin, window.width, window.height),
                                  PixelFilter(settings.filter, settings.filter_width), settings.seed,
                                  std::max(0.125f, 1 / std::sqrt(static_cast<float>(settings.samples)))},
-                        job.film->passes().has(kShadow)};
+                        job.film->passes().has(kShadow),
+                        std::any_of(job.snapshot->lights.begin(), job.snapshot->lights.end(),
+                                    [](const ReadyLight& l) { return l.visible_camera; })};
+    if (events.log)
+        events.log(fmt::format("{} x {} pixels, {} samples, {} lights", window.w, window.h, settings.samples,
+                               job.snapshot->lights.size()));
     return run_tiles(job, events, [&](const TileWork& work) { caster.tile(work); });
 }
 

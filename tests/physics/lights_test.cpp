@@ -189,6 +189,41 @@ TEST(Lights, EmittingMeshIsAnAreaLight) {
     }
 }
 
+TEST(Lights, AreaLightIsSeenWhereItIsToBe) {
+    // From its front, with its radiance, unless something stands before it; not from behind, nor where it is not to be.
+    for (const bool visible : {true, false})
+        for (const int32_t shape : {TRP_SHAPE_RECTANGLE, TRP_SHAPE_ELLIPSE}) {
+            Scene scene;
+            scene.light(TRP_LIGHT_AREA, {3, 2, 1}, translation({0, 0, 2}), [&](TrpLightDesc& d) {
+                d.shape = shape;
+                d.size[0] = d.size[1] = 2;
+                d.visible_camera = visible;
+            });
+            scene.object(quad({-1, -1, 1}, {0, -1, 1}, {0, 1, 1}, {-1, 1, 1}), scene.material([](TrpMaterialDesc& d) {
+                d.diffuse = {{0, 0, 0}, TRP_NO_NODE};
+                d.emission = {{7, 7, 7}, TRP_NO_NODE};
+            }));
+            // From below, looking up; the picture's right is −x.
+            scene.camera(look_at({0, 0, -1}, {0, 0, 2}, {0, 1, 0}), [](TrpCameraDesc& d) {
+                d.type = TRP_CAMERA_ORTHOGRAPHIC;
+                d.width = 4;
+            });
+            const Settings plain = {{"samples", "1"}, {"film.filter_width", "0"}};
+            const Image below = render(scene, 40, 40, plain);
+            const uint32_t light_x = below.at(25, 20)[0] == 7 ? 14 : 25, veil_x = 39 - light_x;
+            EXPECT_FLOAT_EQ(below.at(light_x, 20)[1], visible ? 2 : 0);
+            EXPECT_FLOAT_EQ(below.at(light_x, 20)[3], 1);
+            EXPECT_FLOAT_EQ(below.at(veil_x, 20)[1], 7);
+            const uint32_t corner = light_x > 20 ? 29 : 10;
+            EXPECT_FLOAT_EQ(below.at(corner, 29)[1], visible && shape == TRP_SHAPE_RECTANGLE ? 2 : 0);
+            scene.camera(translation({0, 0, 5}), [](TrpCameraDesc& d) {
+                d.type = TRP_CAMERA_ORTHOGRAPHIC;
+                d.width = 4;
+            });
+            EXPECT_FLOAT_EQ(render(scene, 40, 40, plain).at(25, 20)[1], 0);
+        }
+}
+
 TEST(Shadows, RectangleLightHalfCovered) {
     // A blocker in the light's own plane's half leaves half of the light: by symmetry half the radiance.
     OverFloor f;

@@ -144,8 +144,7 @@ enum {
     TRP_WARNING_MATERIAL = 2, /* a reference to a material that is not there: a default grey stands in */
     TRP_WARNING_TEXTURE = 3,  /* a picture that could not be read: magenta stands in */
     TRP_WARNING_CAMERA = 4,
-    TRP_WARNING_LIGHT = 5,
-    TRP_WARNING_SETTING = 6   /* a setting that has no meaning for the method */
+    TRP_WARNING_LIGHT = 5
 };
 typedef struct TrpWarning {
     uint32_t struct_size;
