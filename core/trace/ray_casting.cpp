@@ -99,12 +99,13 @@ void Caster::write_surface(bool first_sample, uint8_t* seen, Workspace& w) const
     const PassList& passes = job.film->passes();
     float* const rgba[4] = {w.sums.channel(kCombined, 0), w.sums.channel(kCombined, 1), w.sums.channel(kCombined, 2),
                             w.sums.channel(kCombined, 3)};
-    for (int i = 0; i < kBatch; ++i) {
-        if (w.points.slot[i] == kNoSlot) continue;
-        const float weight = w.throughput[i] * w.coefficients.alpha[i];
-        for (int c = 0; c < 3; ++c) rgba[c][i] += weight * w.radiance[c][i];
-        rgba[3][i] += weight;
-    }
+    // Without branches, for the compiler to make vectors of; radiance is 0 where nothing was hit.
+    Lanes weights;
+    for (int i = 0; i < kBatch; ++i)
+        weights[i] = w.points.slot[i] == kNoSlot ? 0 : w.throughput[i] * w.coefficients.alpha[i];
+    for (int c = 0; c < 3; ++c)
+        for (int i = 0; i < kBatch; ++i) rgba[c][i] += weights[i] * w.radiance[c][i];
+    for (int i = 0; i < kBatch; ++i) rgba[3][i] += weights[i];
     if (passes.order().size() == 1) return;
 
     for (int i = 0; i < kBatch; ++i) {
