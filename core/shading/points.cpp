@@ -84,7 +84,7 @@ float greatest_term(const Affine& m, const Vec3& p) {
 }  // namespace
 
 void locate(const Snapshot& snapshot, NormalChoice choice, Points& points) {
-    points.any_program = points.any_holes = false;
+    uint8_t flags = 0;
     for (int i = 0; i < kBatch; ++i) {
         if (points.slot[i] == kNoSlot) {
             points.position.set(i, {0, 0, 0});
@@ -130,9 +130,10 @@ void locate(const Snapshot& snapshot, NormalChoice choice, Points& points) {
         points.normal.set(i, normal);
         const uint32_t material = surface.material(triangle);
         points.material[i] = material;
-        points.any_program |= snapshot.materials[material].has_program();
-        points.any_holes |= snapshot.materials[material].has_holes || !snapshot.materials[material].double_sided;
+        flags |= snapshot.material_flags[material];
     }
+    points.any_program = flags & kHasProgram;
+    points.any_holes = flags & kMayHaveHoles;
     HWY_DYNAMIC_DISPATCH(finish_points)(points);
 }
 

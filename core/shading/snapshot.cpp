@@ -78,6 +78,9 @@ void make_materials(const Scene& scene, Snapshot& snapshot, const Snapshot* prev
         const CompiledMaterial& material = snapshot.materials[m];
         for (int row = 0; row < kCoefficientRows; ++row)
             snapshot.material_rows[row * count + m] = material.constants[row];
+        snapshot.material_flags.push_back(
+            static_cast<uint8_t>((material.has_program() ? kHasProgram : 0) |
+                                 (material.has_holes || !material.double_sided ? kMayHaveHoles : 0)));
         snapshot.needs_footprint |= material.needs_footprint();
     }
 }

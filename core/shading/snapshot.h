@@ -44,12 +44,18 @@ struct PlacedSurface {
     }
 };
 
+enum MaterialFlag : uint8_t {
+    kHasProgram = 1,
+    kMayHaveHoles = 2,  // alpha below 1, or one side
+};
+
 struct Snapshot {
     Vec3d origin{0, 0, 0};
     std::shared_ptr<RayScene> rays;
     std::vector<PlacedSurface> surfaces;  // by geometry id; empty slots have no mesh
     std::vector<CompiledMaterial> materials;
-    std::vector<float> material_rows;  // kCoefficientRows rows of materials.size() numbers each
+    std::vector<float> material_rows;     // kCoefficientRows rows of materials.size() numbers each
+    std::vector<uint8_t> material_flags;  // MaterialFlag bits of each material, close together for locate()
     TextureSet textures;
     std::vector<Light> lamps;  // the scene's, relative to the origin
     LightList lights;          // all that is sampled: lamps, emitting surfaces and the world
