@@ -1,6 +1,7 @@
 // The film: samples become pixels here. Methods hand in blocks of 16 × 16 pixels on a grid fixed to the picture.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -51,6 +52,10 @@ class BlockSums {
     // The lanes of a channel; null where the pass was not asked for.
     float* channel(PassId pass, int c) {
         return passes_.has(pass) ? values_[passes_.first_channel(pass) + c].data : nullptr;
+    }
+    // The lanes of Combined, which is always asked for.
+    std::array<float*, 4> combined() {
+        return {channel(kCombined, 0), channel(kCombined, 1), channel(kCombined, 2), channel(kCombined, 3)};
     }
     // Adds a colour or vector to a pass that was asked for; without effect otherwise.
     void add(PassId pass, int lane, const Vec3& v);

@@ -97,8 +97,7 @@ void Caster::shade(uint32_t block_x, uint32_t block_y, uint32_t sample, Coherenc
 // Passes of the lanes that see a surface, weighed by what reaches them through holes before.
 void Caster::write_surface(bool first_sample, uint8_t* seen, Workspace& w) const {
     const PassList& passes = job.film->passes();
-    float* const rgba[4] = {w.sums.channel(kCombined, 0), w.sums.channel(kCombined, 1), w.sums.channel(kCombined, 2),
-                            w.sums.channel(kCombined, 3)};
+    const std::array<float*, 4> rgba = w.sums.combined();
     // Without branches, for the compiler to make vectors of; radiance is 0 where nothing was hit.
     Lanes weights;
     for (int i = 0; i < kBatch; ++i)
@@ -138,8 +137,7 @@ void Caster::write_surface(bool first_sample, uint8_t* seen, Workspace& w) const
 
 // Area lights that the camera sees, in front of what was hit: a lane that meets one is done.
 void Caster::add_seen_lights(Workspace& w) const {
-    float* const rgba[4] = {w.sums.channel(kCombined, 0), w.sums.channel(kCombined, 1), w.sums.channel(kCombined, 2),
-                            w.sums.channel(kCombined, 3)};
+    const std::array<float*, 4> rgba = w.sums.combined();
     for (int i = 0; i < kBatch; ++i) {
         if (!w.active[i]) continue;
         const RTCRay16& ray = w.rays.packets[i >> 4].ray;
@@ -162,8 +160,7 @@ void Caster::add_seen_lights(Workspace& w) const {
 
 void Caster::add_background(Workspace& w) const {
     sample_background(snapshot, w.rays.direction, w.missed, w.background);
-    float* const rgba[4] = {w.sums.channel(kCombined, 0), w.sums.channel(kCombined, 1), w.sums.channel(kCombined, 2),
-                            w.sums.channel(kCombined, 3)};
+    const std::array<float*, 4> rgba = w.sums.combined();
     for (int i = 0; i < kBatch; ++i) {
         if (!w.missed[i]) continue;
         const float weight = w.throughput[i];
