@@ -12,8 +12,10 @@ Surface::Surface(std::shared_ptr<const Mesh> mesh) : mesh_(std::move(mesh)) {
     make_triangles();
     for (size_t i = 0; i < 3 * size_t{triangle_count_}; ++i) bounds_.extend(mesh_->positions[triangle_vertices()[i]]);
 
-    const bool any_smooth =
-        std::any_of(mesh_->face_smooth.begin(), mesh_->face_smooth.end(), [](uint8_t s) { return s; });
+    const std::vector<uint8_t>& smooth = mesh_->face_smooth;
+    const bool any_smooth = std::any_of(smooth.begin(), smooth.end(), [](uint8_t s) { return s; });
+    mixed_smooth_ = any_smooth && std::find(smooth.begin(), smooth.end(), 0) != smooth.end();
+    if (!smooth.empty() && !any_smooth) return;  // flat
     if (!mesh_->normals.empty()) {
         normal_values_ = unit_normals(*mesh_);
         normals_.domain =

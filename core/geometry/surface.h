@@ -44,6 +44,7 @@ class Surface {
     // Averages over all faces around each position, vertices welded where they coincide (shading.normals = averaged).
     // Made on first use. Any thread.
     const NormalLayer& averaged_normals() const;
+    bool mixed_smooth() const { return mixed_smooth_; }        // some faces are flat in spite of normals()
     const Bounds& bounds() const { return bounds_; }           // of the triangles, at the first time sample
     uint32_t dropped_faces() const { return dropped_faces_; }  // without area
     uint64_t bytes() const;                                    // held beside the mesh
@@ -57,6 +58,7 @@ class Surface {
     NormalLayer normals_;
     Bounds bounds_;
     uint32_t triangle_count_ = 0, dropped_faces_ = 0;
+    bool mixed_smooth_ = false;
     mutable std::once_flag averaged_once_;
     mutable std::vector<Vec3> averaged_values_;
     mutable NormalLayer averaged_;

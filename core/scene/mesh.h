@@ -1,6 +1,7 @@
 // A mesh as it was handed in: n-gons with their own edges and layers. Plain data, never changed after its making.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -16,6 +17,13 @@ struct Attribute {
     uint32_t components = 0;
     std::vector<float> values;
 };
+
+// A named layer, or the first where no name is given; null where there is none such.
+inline const Attribute* find_layer(const std::vector<Attribute>& layers, const std::string& name) {
+    if (name.empty()) return layers.empty() ? nullptr : &layers[0];
+    const auto it = std::find_if(layers.begin(), layers.end(), [&](const Attribute& a) { return a.name == name; });
+    return it == layers.end() ? nullptr : &*it;
+}
 
 struct Mesh {
     std::string name;

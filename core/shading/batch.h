@@ -6,6 +6,7 @@
 // nothing, or is done, has slot kNoSlot. No lane's result depends on another lane.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "base/vec.h"
@@ -32,12 +33,9 @@ struct Points {
     alignas(64) Lanes b1, b2;               // barycentric weights of the triangle's second and third vertex
     alignas(64) Lanes time;                 // 0 to 1 over the time samples
     LaneVec3 to_viewer;                     // unit
-    // Footprint: where the rays of one pixel to the right, and one pixel up, meet the plane of the triangle, relative
-    // to the position. Needed where textures are (Snapshot::needs_footprint), else unset.
-    LaneVec3 position_dx, position_dy;
-
     // Written by locate().
     LaneVec3 position;                      // world space, relative to the snapshot's origin
+    LaneVec3 edge1, edge2;                  // from the triangle's first vertex to its second and third
     LaneVec3 geometric_normal;              // unit, on the viewer's side
     LaneVec3 normal;                        // unit shading normal, on the same side of the surface
     alignas(64) Lanes offset;               // along the geometric normal, clears the surface of itself (rounding bound)
@@ -45,6 +43,13 @@ struct Points {
     alignas(64) uint8_t behind[kBatch];     // 1: the viewer sees the back
     bool any_program = false;               // a lane's material has nodes
     bool any_holes = false;                 // a lane's material may have alpha below 1, or one side
+
+    // The footprint, by the visibility method after locate(): the change of b1 and b2 by one pixel to the right and one
+    // pixel up, in the plane of the triangle. Needed where textures are (Snapshot::needs_footprint), else unset.
+    alignas(64) Lanes b1_dx, b2_dx, b1_dy, b2_dy;
+    void clear_footprints() {
+        for (Lanes* lanes : {&b1_dx, &b2_dx, &b1_dy, &b2_dy}) std::fill_n(*lanes, kBatch, 0.0f);
+    }
 };
 
 struct Coefficients {

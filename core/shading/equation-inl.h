@@ -42,6 +42,42 @@ V dot3(const Vector3<V>& a, const Vector3<V>& b) {
     return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
 }
 
+template <class V>
+Vector3<V> cross3(const Vector3<V>& a, const Vector3<V>& b) {
+    return {hn::MulSub(a.y, b.z, hn::Mul(a.z, b.y)), hn::MulSub(a.z, b.x, hn::Mul(a.x, b.z)),
+            hn::MulSub(a.x, b.y, hn::Mul(a.y, b.x))};
+}
+
+template <class V>
+Vector3<V> operator+(const Vector3<V>& a, const Vector3<V>& b) {
+    return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+}
+template <class V>
+Vector3<V> operator-(const Vector3<V>& a, const Vector3<V>& b) {
+    return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+template <class V>
+Vector3<V> operator*(const Vector3<V>& a, V s) {
+    return {hn::Mul(a.x, s), hn::Mul(a.y, s), hn::Mul(a.z, s)};
+}
+// a + b s
+template <class V>
+Vector3<V> add_scaled(const Vector3<V>& a, const Vector3<V>& b, V s) {
+    return {hn::MulAdd(b.x, s, a.x), hn::MulAdd(b.y, s, a.y), hn::MulAdd(b.z, s, a.z)};
+}
+template <class M, class V>
+Vector3<V> select3(M mask, const Vector3<V>& yes, const Vector3<V>& no) {
+    return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y), hn::IfThenElse(mask, yes.z, no.z)};
+}
+template <class D, class V = hn::Vec<D>>
+Vector3<V> broadcast(D d, const Vec3& v) {
+    return {hn::Set(d, v.x), hn::Set(d, v.y), hn::Set(d, v.z)};
+}
+template <class V>
+V greatest_component(const Vector3<V>& a) {
+    return hn::Max(hn::Abs(a.x), hn::Max(hn::Abs(a.y), hn::Abs(a.z)));
+}
+
 // x^n for x in [0, 1] and n ≥ 0.
 template <class D, class V>
 V power(D d, V x, V n) {

@@ -107,8 +107,8 @@ void evaluate(const Snapshot& snapshot, Points& points, Coefficients& coefficien
         // Material by material, in the order in which they first appear.
         bool done[kBatch];
         for (int i = 0; i < kBatch; ++i)
-            done[i] = points.slot[i] == kNoSlot || !snapshot.materials[points.material[i]].has_program();
-        int lanes[kBatch];
+            done[i] = points.slot[i] == kNoSlot || !(snapshot.material_flags[points.material[i]] & kHasProgram);
+        int32_t lanes[kBatch] = {};
         for (int i = 0; i < kBatch; ++i) {
             if (done[i]) continue;
             int count = 0;

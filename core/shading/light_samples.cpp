@@ -20,26 +20,6 @@ namespace trp::HWY_NAMESPACE {
 
 constexpr float kFar = 1e30f;
 
-template <class D, class V = hn::Vec<D>>
-Vector3<V> broadcast(D d, const Vec3& v) {
-    return {hn::Set(d, v.x), hn::Set(d, v.y), hn::Set(d, v.z)};
-}
-
-template <class V>
-Vector3<V> scaled(const Vector3<V>& v, V s) {
-    return {hn::Mul(v.x, s), hn::Mul(v.y, s), hn::Mul(v.z, s)};
-}
-
-template <class V>
-Vector3<V> add(const Vector3<V>& a, const Vector3<V>& b) {
-    return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
-}
-
-template <class V>
-Vector3<V> subtract(const Vector3<V>& a, const Vector3<V>& b) {
-    return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
-}
-
 template <class D, class V>
 V safe_inverse(D d, V x) {
     return hn::IfThenElseZero(hn::Gt(x, hn::Zero(d)), hn::Div(hn::Set(d, 1.0f), hn::Max(x, hn::Set(d, 1e-37f))));
@@ -114,10 +94,10 @@ void sample_lanes(D d, const ReadyLight& light, int32_t falloff, const Points& p
     switch (light.kind) {
         case ReadyLight::Kind::point:
         case ReadyLight::Kind::spot: {
-            const Vector3<V> to_centre = subtract(broadcast(d, light.position), load3(d, points.position, i));
+            const Vector3<V> to_centre = broadcast(d, light.position) - load3(d, points.position, i);
             const V centre_distance2 = dot3(to_centre, to_centre);
             const V centre_distance = hn::Sqrt(centre_distance2);
-            const Vector3<V> axis = scaled(to_centre, safe_inverse(d, centre_distance));
+            const Vector3<V> axis = to_centre * safe_inverse(d, centre_distance);
             Vector3<V> to_light = to_centre;
             V facing = one;
             distance = centre_distance;
@@ -128,9 +108,9 @@ void sample_lanes(D d, const ReadyLight& light, int32_t falloff, const Points& p
                 V x, y;
                 disk(d, u, v, x, y);
                 const V r = hn::Set(d, light.radius);
-                to_light = add(to_centre, add(scaled(s, hn::Mul(x, r)), scaled(t, hn::Mul(y, r))));
+                to_light = to_centre + s * hn::Mul(x, r) + t * hn::Mul(y, r);
                 distance = hn::Sqrt(dot3(to_light, to_light));
-                direction = scaled(to_light, safe_inverse(d, distance));
+                direction = to_light * safe_inverse(d, distance);
                 facing = dot3(direction, axis);
             }
             const V inverse = safe_inverse(d, distance);
@@ -158,8 +138,7 @@ void sample_lanes(D d, const ReadyLight& light, int32_t falloff, const Points& p
                 const V s = hn::Set(d, light.sin_half_angle);
                 x = hn::Mul(x, s), y = hn::Mul(y, s);
                 const V cosine = hn::Sqrt(hn::Max(hn::NegMulAdd(x, x, hn::NegMulAdd(y, y, one)), hn::Set(d, 1e-6f)));
-                direction =
-                    add(scaled(z, cosine), add(scaled(broadcast(d, light.x), x), scaled(broadcast(d, light.y), y)));
+                direction = z * cosine + broadcast(d, light.x) * x + broadcast(d, light.y) * y;
                 weight = hn::Div(one, cosine);
             }
             break;
@@ -172,7 +151,7 @@ void sample_lanes(D d, const ReadyLight& light, int32_t falloff, const Points& p
             if (light.ellipse) disk(d, u, v, x, y);
             x = hn::Mul(x, half_x), y = hn::Mul(y, half_y);
             const Vector3<V> axis_x = broadcast(d, light.x), axis_y = broadcast(d, light.y);
-            const Vector3<V> to_centre = subtract(broadcast(d, light.position), load3(d, points.position, i));
+            const Vector3<V> to_centre = broadcast(d, light.position) - load3(d, points.position, i);
             auto wide = hn::Lt(one, zero);
             V solid_angle = zero;
             if (!light.ellipse) {
@@ -184,10 +163,10 @@ void sample_lanes(D d, const ReadyLight& light, int32_t falloff, const Points& p
                 x = hn::IfThenElse(wide, hn::Sub(wide_x, cx), x);
                 y = hn::IfThenElse(wide, hn::Sub(wide_y, cy), y);
             }
-            const Vector3<V> to_light = add(to_centre, add(scaled(axis_x, x), scaled(axis_y, y)));
+            const Vector3<V> to_light = to_centre + axis_x * x + axis_y * y;
             distance = hn::Sqrt(dot3(to_light, to_light));
             const V inverse = safe_inverse(d, distance);
-            direction = scaled(to_light, inverse);
+            direction = to_light * inverse;
             const V cosine = hn::Max(dot3(direction, z), zero);  // it shines to −z
             const V by_area = hn::Mul(hn::Mul(cosine, hn::Set(d, light.area)), hn::Mul(inverse, inverse));
             weight = hn::IfThenElse(wide, hn::IfThenElseZero(hn::Gt(cosine, zero), solid_angle), by_area);
@@ -212,8 +191,7 @@ void sample_lanes(D d, const ReadyLight& light, int32_t falloff, const Points& p
             const V angle = hn::Mul(v, hn::Set(d, 2 * std::numbers::pi_v<float>));
             Vector3<V> s, t;
             basis(d, n, s, t);
-            direction = add(scaled(n, cosine), add(scaled(s, hn::Mul(sine, hn::Cos(d, angle))),
-                                                   scaled(t, hn::Mul(sine, hn::Sin(d, angle)))));
+            direction = n * cosine + s * hn::Mul(sine, hn::Cos(d, angle)) + t * hn::Mul(sine, hn::Sin(d, angle));
             // π times the density: 1/2 cos + 1/4
             weight = hn::Div(one, hn::MulAdd(half, cosine, hn::Set(d, 0.25f)));
             weight = hn::Mul(weight, hn::Set(d, std::numbers::pi_v<float>));
@@ -250,6 +228,7 @@ void sample_surface(const Snapshot& snapshot, const ReadyLight& light, const Poi
     // Points on the light, so that its own material says what it emits there.
     static thread_local Points emitters;
     static thread_local Coefficients emitted;
+    emitters.clear_footprints();
     for (int i = 0; i < kBatch; ++i) {
         samples.light.set(i, {0, 0, 0});
         samples.direction.set(i, {0, 0, 1});
@@ -264,8 +243,6 @@ void sample_surface(const Snapshot& snapshot, const ReadyLight& light, const Poi
         emitters.b1[i] = root * (1 - v[i]);
         emitters.b2[i] = root * v[i];
         emitters.time[i] = points.time[i];
-        emitters.position_dx.set(i, {0, 0, 0});
-        emitters.position_dy.set(i, {0, 0, 0});
         const PlacedSurface& surface = snapshot.surfaces[light.slot];
         const uint32_t* t = surface.vertices + 3 * static_cast<size_t>(emitters.triangle[i]);
         const Vec3 at = surface.world_position(t[0]) * (1 - root) + surface.world_position(t[1]) * emitters.b1[i] +

@@ -1,9 +1,8 @@
 // locate(): from a triangle and barycentrics to position, normals and material.
 //
-// Fetching is a scalar loop (every lane may sit on another mesh); what can be done for all lanes at once follows on
-// vectors. Positions are interpolated from the triangle's vertices, which bounds their error by a few units in the last
-// place of the greatest coordinate (Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., sec. 6.8.4) and so
-// gives the offset that clears a ray of the surface it leaves at every scale.
+// Positions are interpolated from the triangle's vertices, which bounds their error by a few units in the last place of
+// the greatest coordinate (Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., sec. 6.8.4) and so gives the
+// offset that clears a ray of the surface it leaves at every scale.
 #include <algorithm>
 #include <cmath>
 
@@ -13,50 +12,143 @@
 #define HWY_TARGET_INCLUDE "shading/points.cpp"
 #include "hwy/foreach_target.h"
 
-#include "hwy/highway.h"
+#include "shading/surface_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace trp::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
-// Lengths, sides and offsets of what the fetch left in `points`: normals of any length, `offset` the greatest
-// coordinate.
-void finish_points(Points& points) {
-    const hn::ScalableTag<float> d;
-    using V = hn::Vec<decltype(d)>;
-    const V tiny = hn::Set(d, 1e-37f), one = hn::Set(d, 1.0f), zero = hn::Zero(d);
-    const V offset_scale = hn::Set(d, 0x1p-19f);
-    for (int i = 0; i < kBatch; i += static_cast<int>(hn::Lanes(d))) {
-        V gx = hn::Load(d, points.geometric_normal.x + i), gy = hn::Load(d, points.geometric_normal.y + i),
-          gz = hn::Load(d, points.geometric_normal.z + i);
-        const V vx = hn::Load(d, points.to_viewer.x + i), vy = hn::Load(d, points.to_viewer.y + i),
-                vz = hn::Load(d, points.to_viewer.z + i);
-        // Scale before squaring, so that the smallest triangles keep a length.
-        const V greatest = hn::Max(hn::Max(hn::Abs(gx), hn::Abs(gy)), hn::Max(hn::Abs(gz), tiny));
-        const V scale = hn::Div(one, greatest);
-        gx = hn::Mul(gx, scale), gy = hn::Mul(gy, scale), gz = hn::Mul(gz, scale);
-        const V length2 = hn::MulAdd(gx, gx, hn::MulAdd(gy, gy, hn::Mul(gz, gz)));
-        const V facing = hn::MulAdd(gx, vx, hn::MulAdd(gy, vy, hn::Mul(gz, vz)));
-        const auto behind = hn::Lt(facing, zero);
-        const V side = hn::IfThenElse(behind, hn::Neg(one), one);
-        const V g = hn::Div(side, hn::Sqrt(hn::Max(length2, tiny)));
-        hn::Store(hn::Mul(gx, g), d, points.geometric_normal.x + i);
-        hn::Store(hn::Mul(gy, g), d, points.geometric_normal.y + i);
-        hn::Store(hn::Mul(gz, g), d, points.geometric_normal.z + i);
-        V nx = hn::Load(d, points.normal.x + i), ny = hn::Load(d, points.normal.y + i),
-          nz = hn::Load(d, points.normal.z + i);
-        const V most = hn::Max(hn::Max(hn::Abs(nx), hn::Abs(ny)), hn::Max(hn::Abs(nz), tiny));
-        const V shrink = hn::Div(one, most);
-        nx = hn::Mul(nx, shrink), ny = hn::Mul(ny, shrink), nz = hn::Mul(nz, shrink);
-        const V n = hn::Div(side, hn::Sqrt(hn::Max(hn::MulAdd(nx, nx, hn::MulAdd(ny, ny, hn::Mul(nz, nz))), tiny)));
-        hn::Store(hn::Mul(nx, n), d, points.normal.x + i);
-        hn::Store(hn::Mul(ny, n), d, points.normal.y + i);
-        hn::Store(hn::Mul(nz, n), d, points.normal.z + i);
-        hn::Store(hn::Mul(hn::Load(d, points.offset + i), offset_scale), d, points.offset + i);
-        alignas(64) float flags[HWY_MAX_BYTES / sizeof(float)];
-        hn::Store(hn::IfThenElseZero(behind, one), d, flags);
-        for (size_t k = 0; k < hn::Lanes(d); ++k) points.behind[i + k] = flags[k] != 0;
+// Vertices of triangles in world space.
+template <class V>
+struct Corners {
+    Vector3<V> p0, p1, p2;
+    V greatest;  // a bound of all numbers that were added up for a coordinate
+};
+
+template <class D, class VI, class V = hn::Vec<D>>
+Corners<V> load_corners(D d, const PlacedSurface& surface, VI v0, VI v1, VI v2) {
+    Corners<V> c{gather3(d, surface.positions, v0), gather3(d, surface.positions, v1),
+                 gather3(d, surface.positions, v2), hn::Zero(d)};
+    Vector3<V>* const points[3] = {&c.p0, &c.p1, &c.p2};
+    for (Vector3<V>* p : points) {
+        if (surface.baked) {
+            c.greatest = hn::Max(c.greatest, greatest_component(*p));
+            continue;
+        }
+        V out[3];
+        for (int r = 0; r < 3; ++r) {
+            const float* row = surface.world_from_object.rows[r];
+            const V x = hn::Mul(hn::Set(d, row[0]), p->x), y = hn::Mul(hn::Set(d, row[1]), p->y),
+                    z = hn::Mul(hn::Set(d, row[2]), p->z), w = hn::Set(d, row[3]);
+            out[r] = hn::Add(hn::Add(x, y), hn::Add(z, w));
+            const V terms = hn::Add(hn::Add(hn::Abs(x), hn::Abs(y)), hn::Add(hn::Abs(z), hn::Abs(w)));
+            c.greatest = hn::Max(c.greatest, terms);
+        }
+        *p = {out[0], out[1], out[2]};
     }
+    return c;
+}
+
+// The cofactor matrix of the surface's transform times n: turns normals, up to length.
+template <class D, class V>
+Vector3<V> turn_normal(D d, const PlacedSurface& surface, const Vector3<V>& n) {
+    const Affine& m = surface.world_from_object;
+    const Vec3 x = m.column(0), y = m.column(1), z = m.column(2);
+    const float sign = surface.normal_sign;
+    return broadcast(d, y.cross(z) * sign) * n.x + broadcast(d, z.cross(x) * sign) * n.y +
+           broadcast(d, x.cross(y) * sign) * n.z;
+}
+
+// Unit length, times `side`; vectors are scaled before they are squared, so that the smallest keep a length.
+template <class D, class V>
+Vector3<V> unit(D d, const Vector3<V>& v, V side) {
+    const V tiny = hn::Set(d, 1e-37f);
+    const Vector3<V> scaled = v * hn::Div(hn::Set(d, 1.0f), hn::Max(greatest_component(v), tiny));
+    return scaled * hn::Div(side, hn::Sqrt(hn::Max(dot3(scaled, scaled), tiny)));
+}
+
+void locate_lanes(const Snapshot& snapshot, NormalChoice choice, Points& points) {
+    const hn::ScalableTag<float> d;
+    const hn::RebindToSigned<decltype(d)> di;
+    using V = hn::Vec<decltype(d)>;
+    using VI = hn::Vec<decltype(di)>;
+    const int lanes = static_cast<int>(hn::Lanes(d));
+    const V zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+    auto load = [&](const uint32_t* values) { return hn::Load(di, reinterpret_cast<const int32_t*>(values)); };
+    uint8_t flags = 0;
+    for (int i = 0; i < kBatch; i += lanes) {
+        const VI slots = load(points.slot + i), triangles = load(points.triangle + i);
+        const auto hit = hn::Ne(slots, hn::Set(di, static_cast<int32_t>(kNoSlot)));
+        const V b1 = hn::Load(d, points.b1 + i), b2 = hn::Load(d, points.b2 + i);
+        Vector3<V> position{zero, zero, zero}, edge1 = position, edge2 = position, geometric{zero, zero, one},
+                                               normal = geometric;
+        V greatest = zero;
+        hn::Store(hn::Zero(di), di, reinterpret_cast<int32_t*>(points.material) + i);
+
+        for_each_surface(di, snapshot, slots, hit, [&](const PlacedSurface& surface, auto here) {
+            const auto mask = hn::RebindMask(d, here);
+            const VI triangle = hn::IfThenElseZero(here, triangles), first = hn::Mul(triangle, hn::Set(di, 3));
+            const VI v0 = triangle_vertex(di, surface, first, 0), v1 = triangle_vertex(di, surface, first, 1),
+                     v2 = triangle_vertex(di, surface, first, 2);
+            const Corners<V> c = load_corners(d, surface, v0, v1, v2);
+            const Vector3<V> e1 = c.p1 - c.p0, e2 = c.p2 - c.p0;
+            position = select3(mask, add_scaled(add_scaled(c.p0, e1, b1), e2, b2), position);
+            edge1 = select3(mask, e1, edge1);
+            edge2 = select3(mask, e2, edge2);
+            greatest = hn::IfThenElse(mask, c.greatest, greatest);
+            const Vector3<V> plane = cross3(e1, e2) * hn::Set(d, surface.normal_sign);
+            geometric = select3(mask, plane, geometric);
+
+            alignas(64) int32_t is_here[HWY_MAX_BYTES / sizeof(int32_t)];
+            hn::Store(hn::VecFromMask(di, here), di, is_here);
+            // What is by face is read lane by lane: few meshes mix.
+            alignas(64) int32_t is_smooth[HWY_MAX_BYTES / sizeof(int32_t)];
+            hn::Store(hn::Set(di, -1), di, is_smooth);
+            if (choice == NormalChoice::mesh && surface.face_smooth)
+                for (int k = 0; k < lanes; ++k)
+                    if (is_here[k]) is_smooth[k] = -surface.face_smooth[surface.face(points.triangle[i + k])];
+            const NormalLayer& layer =
+                choice == NormalChoice::averaged ? surface.surface->averaged_normals() : surface.normals;
+            Vector3<V> shading = plane;
+            if (layer.domain != NormalLayer::Domain::flat) {
+                const bool by_vertex = layer.domain == NormalLayer::Domain::vertex;
+                auto at = [&](int k, VI vertex) {
+                    return gather3(d, layer.values, by_vertex ? vertex : triangle_corner(di, surface, first, k));
+                };
+                const Vector3<V> n0 = at(0, v0), n1 = at(1, v1), n2 = at(2, v2);
+                Vector3<V> n = add_scaled(add_scaled(n0, n1 - n0, b1), n2 - n0, b2);
+                if (!surface.identity) n = turn_normal(d, surface, n);
+                shading = select3(hn::RebindMask(d, hn::Ne(hn::Load(di, is_smooth), hn::Zero(di))), n, plane);
+            }
+            normal = select3(mask, shading, normal);
+            if (!surface.face_materials) {
+                const uint32_t material = surface.slot_materials[0];
+                hn::BlendedStore(hn::Set(di, static_cast<int32_t>(material)), here, di,
+                                 reinterpret_cast<int32_t*>(points.material) + i);
+                flags |= snapshot.material_flags[material];
+                return;
+            }
+            for (int k = 0; k < lanes; ++k) {
+                if (!is_here[k]) continue;
+                const uint32_t material = surface.material(points.triangle[i + k]);
+                points.material[i + k] = material;
+                flags |= snapshot.material_flags[material];
+            }
+        });
+
+        const auto behind = hn::Lt(dot3(geometric, load3(d, points.to_viewer, i)), zero);
+        const V side = hn::IfThenElse(behind, hn::Neg(one), one);
+        store3(d, position, points.position, i);
+        store3(d, edge1, points.edge1, i);
+        store3(d, edge2, points.edge2, i);
+        store3(d, unit(d, geometric, side), points.geometric_normal, i);
+        store3(d, unit(d, normal, side), points.normal, i);
+        hn::Store(hn::Mul(greatest, hn::Set(d, 0x1p-19f)), d, points.offset + i);
+        alignas(64) float is_behind[HWY_MAX_BYTES / sizeof(float)];
+        hn::Store(hn::IfThenElseZero(behind, one), d, is_behind);
+        for (int k = 0; k < lanes; ++k) points.behind[i + k] = is_behind[k] != 0;
+    }
+    points.any_program = flags & kHasProgram;
+    points.any_holes = flags & kMayHaveHoles;
 }
 
 }  // namespace trp::HWY_NAMESPACE
@@ -64,77 +156,10 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace trp {
-HWY_EXPORT(finish_points);
-
-namespace {
-
-float greatest_coordinate(const Vec3& p) {
-    return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-}
-
-// A bound of all numbers that a transform adds up for a point.
-float greatest_term(const Affine& m, const Vec3& p) {
-    float most = 0;
-    for (const auto& row : m.rows)
-        most =
-            std::max(most, std::abs(row[0] * p.x) + std::abs(row[1] * p.y) + std::abs(row[2] * p.z) + std::abs(row[3]));
-    return most;
-}
-
-}  // namespace
+HWY_EXPORT(locate_lanes);
 
 void locate(const Snapshot& snapshot, NormalChoice choice, Points& points) {
-    uint8_t flags = 0;
-    for (int i = 0; i < kBatch; ++i) {
-        if (points.slot[i] == kNoSlot) {
-            points.position.set(i, {0, 0, 0});
-            points.geometric_normal.set(i, {0, 0, 1});
-            points.normal.set(i, {0, 0, 1});
-            points.offset[i] = 0;
-            points.material[i] = 0;
-            continue;
-        }
-        const PlacedSurface& surface = snapshot.surfaces[points.slot[i]];
-        const uint32_t triangle = points.triangle[i];
-        const uint32_t* v = surface.vertices + 3 * static_cast<size_t>(triangle);
-        Vec3 p0 = surface.positions[v[0]], p1 = surface.positions[v[1]], p2 = surface.positions[v[2]];
-        float greatest;
-        if (surface.baked) {
-            greatest = std::max({greatest_coordinate(p0), greatest_coordinate(p1), greatest_coordinate(p2)});
-        } else {
-            const Affine& m = surface.world_from_object;
-            greatest = std::max({greatest_term(m, p0), greatest_term(m, p1), greatest_term(m, p2)});
-            p0 = m.point(p0), p1 = m.point(p1), p2 = m.point(p2);
-        }
-        const float b1 = points.b1[i], b2 = points.b2[i], b0 = 1 - b1 - b2;
-        const Vec3 geometric = (p1 - p0).cross(p2 - p0) * surface.normal_sign;
-        points.position.set(i, p0 * b0 + p1 * b1 + p2 * b2);
-        points.geometric_normal.set(i, geometric);
-        points.offset[i] = greatest;
-
-        const NormalLayer& layer =
-            choice == NormalChoice::averaged ? surface.surface->averaged_normals() : surface.normals;
-        Vec3 normal = geometric;
-        const bool flat =
-            layer.domain == NormalLayer::Domain::flat ||
-            (choice == NormalChoice::mesh && surface.face_smooth && !surface.face_smooth[surface.face(triangle)]);
-        if (!flat) {
-            if (layer.domain == NormalLayer::Domain::vertex)
-                normal = layer.values[v[0]] * b0 + layer.values[v[1]] * b1 + layer.values[v[2]] * b2;
-            else
-                normal = layer.values[surface.corner(triangle, 0)] * b0 +
-                         layer.values[surface.corner(triangle, 1)] * b1 +
-                         layer.values[surface.corner(triangle, 2)] * b2;
-            if (!surface.identity) normal = surface.world_from_object.normal(normal) * surface.normal_sign;
-        }
-        points.normal.set(i, normal);
-        const uint32_t material = surface.material(triangle);
-        points.material[i] = material;
-        flags |= snapshot.material_flags[material];
-    }
-    points.any_program = flags & kHasProgram;
-    points.any_holes = flags & kMayHaveHoles;
-    HWY_DYNAMIC_DISPATCH(finish_points)(points);
+    HWY_DYNAMIC_DISPATCH(locate_lanes)(snapshot, choice, points);
 }
 
 }  // namespace trp

@@ -17,8 +17,7 @@ bool reads_surface(int32_t type) {
            type == TRP_NODE_NORMAL_MAP;
 }
 
-// ------------------------------------------------------------------------------------------------ arithmetic of
-// numbers
+// --------------------------------------------------------------------------------------------- arithmetic of numbers
 
 // out[c][j] = f(a, b, c) for each channel and lane; an input of none is the instruction's own value.
 template <class F>
@@ -95,15 +94,7 @@ void run_arithmetic(const Instruction& in, const Register* registers, int count,
     }
 }
 
-// ------------------------------------------------------------------------------------------------- layers of the
-// surface
-
-// A named layer of a mesh, or its first where no name is given; null where it has none such.
-const Attribute* find_layer(const std::vector<Attribute>& layers, const std::string& name) {
-    if (name.empty()) return layers.empty() ? nullptr : &layers[0];
-    const auto it = std::find_if(layers.begin(), layers.end(), [&](const Attribute& a) { return a.name == name; });
-    return it == layers.end() ? nullptr : &*it;
-}
+// ------------------------------------------------------------------------------------------------ layers of a surface
 
 const float* layer_value(const Attribute& layer, const PlacedSurface& surface, uint32_t triangle, int k) {
     const uint32_t element = layer.domain == TRP_DOMAIN_CORNER
@@ -112,57 +103,7 @@ const float* layer_value(const Attribute& layer, const PlacedSurface& surface, u
     return &layer.values[static_cast<size_t>(element) * layer.components];
 }
 
-// Texture coordinates over one triangle: their gradients in space, by which footprints and tangents are found.
-struct Parametrization {
-    Vec2 at{0, 0};
-    Vec3 gradient_u{0, 0, 0}, gradient_v{0, 0, 0};
-};
-
-Parametrization parametrize(const Attribute& layer, const PlacedSurface& surface, const Points& points, int lane) {
-    const uint32_t triangle = points.triangle[lane];
-    const uint32_t* v = surface.vertices + 3 * static_cast<size_t>(triangle);
-    const float *t0 = layer_value(layer, surface, triangle, 0), *t1 = layer_value(layer, surface, triangle, 1),
-                *t2 = layer_value(layer, surface, triangle, 2);
-    const Vec3 p0 = surface.world_position(v[0]), e1 = surface.world_position(v[1]) - p0,
-               e2 = surface.world_position(v[2]) - p0;
-    const Vec3 n = e1.cross(e2);
-    const float n2 = n.dot(n);
-    const float b1 = points.b1[lane], b2 = points.b2[lane], b0 = 1 - b1 - b2;
-    Parametrization p;
-    p.at = {t0[0] * b0 + t1[0] * b1 + t2[0] * b2, t0[1] * b0 + t1[1] * b1 + t2[1] * b2};
-    if (n2 > 0) {
-        // Gradients of the barycentric weights b1 and b2.
-        const Vec3 g1 = e2.cross(n) / n2, g2 = n.cross(e1) / n2;
-        p.gradient_u = g1 * (t1[0] - t0[0]) + g2 * (t2[0] - t0[0]);
-        p.gradient_v = g1 * (t1[1] - t0[1]) + g2 * (t2[1] - t0[1]);
-    }
-    return p;
-}
-
-void run_uv(const Snapshot& snapshot, const Instruction& in, const Points& points, const int* lanes, int count,
-            Register& out) {
-    uint32_t slot = kNoSlot;
-    const Attribute* layer = nullptr;
-    for (int j = 0; j < count; ++j) {
-        const int lane = lanes[j];
-        const PlacedSurface& surface = snapshot.surfaces[points.slot[lane]];
-        if (points.slot[lane] != slot) {
-            slot = points.slot[lane];
-            layer = find_layer(surface.mesh->uv_sets, in.name);
-        }
-        const Parametrization p = layer ? parametrize(*layer, surface, points, lane) : Parametrization{};
-        out.value[0][j] = p.at.x;
-        out.value[1][j] = p.at.y;
-        out.value[2][j] = out.value[3][j] = 0;
-        const Vec3 dx = points.position_dx.get(lane), dy = points.position_dy.get(lane);
-        out.ddx[0][j] = p.gradient_u.dot(dx);
-        out.ddx[1][j] = p.gradient_v.dot(dx);
-        out.ddy[0][j] = p.gradient_u.dot(dy);
-        out.ddy[1][j] = p.gradient_v.dot(dy);
-    }
-}
-
-void run_color(const Snapshot& snapshot, const Instruction& in, const Points& points, const int* lanes, int count,
+void run_color(const Snapshot& snapshot, const Instruction& in, const Points& points, const int32_t* lanes, int count,
                Register& out) {
     for (int j = 0; j < count; ++j) {
         const int lane = lanes[j];
@@ -181,8 +122,8 @@ void run_color(const Snapshot& snapshot, const Instruction& in, const Points& po
 
 // A tangent-space normal to world space, on the viewer's side. The tangent frame is that of the triangle's own
 // parametrization, made orthogonal to the shading normal, so that mirrored and skewed maps come out right.
-void run_normal_map(const Snapshot& snapshot, const Instruction& in, const Points& points, const int* lanes, int count,
-                    const Register& map, Register& out) {
+void run_normal_map(const Snapshot& snapshot, const Instruction& in, const Points& points, const int32_t* lanes,
+                    int count, const Register& map, Register& out) {
     for (int j = 0; j < count; ++j) {
         const int lane = lanes[j];
         const PlacedSurface& surface = snapshot.surfaces[points.slot[lane]];
@@ -192,9 +133,16 @@ void run_normal_map(const Snapshot& snapshot, const Instruction& in, const Point
         const Vec3 n = seen * side;
         Vec3 result = n;
         if (layer) {
-            const Parametrization p = parametrize(*layer, surface, points, lane);
-            const Vec3 plane = p.gradient_u.cross(p.gradient_v);  // along ± the triangle's normal
-            const Vec3 along_u = p.gradient_v.cross(plane), along_v = plane.cross(p.gradient_u);
+            // ∂p/∂u and ∂p/∂v, up to a factor: the inverse of the 2 × 2 matrix of the edges in texture coordinates.
+            const uint32_t triangle = points.triangle[lane];
+            const float *t0 = layer_value(*layer, surface, triangle, 0),
+                        *t1 = layer_value(*layer, surface, triangle, 1),
+                        *t2 = layer_value(*layer, surface, triangle, 2);
+            const Vec2 d1(t1[0] - t0[0], t1[1] - t0[1]), d2(t2[0] - t0[0], t2[1] - t0[1]);
+            const float determinant = d1.x * d2.y - d1.y * d2.x;
+            const float turn = determinant < 0 ? -1.0f : determinant > 0 ? 1.0f : 0.0f;
+            const Vec3 e1 = points.edge1.get(lane), e2 = points.edge2.get(lane);
+            const Vec3 along_u = (e1 * d2.y - e2 * d1.y) * turn, along_v = (e2 * d1.x - e1 * d2.x) * turn;
             Vec3 t = along_u - n * n.dot(along_u);
             const float length = t.length();
             if (length > 0) {
@@ -243,7 +191,14 @@ float* coefficient_row(Coefficients& c, int row) {
 
 Vec2 first_uv(const PlacedSurface& surface, const Points& points, int lane) {
     const Attribute* layer = find_layer(surface.mesh->uv_sets, "");
-    return layer ? parametrize(*layer, surface, points, lane).at : Vec2(0, 0);
+    if (!layer) return {0, 0};
+    const float b1 = points.b1[lane], b2 = points.b2[lane], b0 = 1 - b1 - b2;
+    Vec2 uv;
+    for (int c = 0; c < 2; ++c)
+        uv[c] = layer_value(*layer, surface, points.triangle[lane], 0)[c] * b0 +
+                layer_value(*layer, surface, points.triangle[lane], 1)[c] * b1 +
+                layer_value(*layer, surface, points.triangle[lane], 2)[c] * b2;
+    return uv;
 }
 
 bool CompiledMaterial::needs_footprint() const {
@@ -372,7 +327,7 @@ CompiledMaterial compile(const Material& material, const TextureSet& textures) {
     return out;
 }
 
-void run_program(const Snapshot& snapshot, const CompiledMaterial& material, const int* lanes, int count,
+void run_program(const Snapshot& snapshot, const CompiledMaterial& material, const int32_t* lanes, int count,
                  Points& points, Coefficients& coefficients, ProgramScratch& scratch) {
     Register* registers = scratch.registers(material.instructions.size());
     for (size_t i = 0; i < material.instructions.size(); ++i) {
@@ -381,7 +336,7 @@ void run_program(const Snapshot& snapshot, const CompiledMaterial& material, con
         if (in.type != TRP_NODE_UV && in.type != TRP_NODE_UV_TRANSFORM) clear_derivatives(out, count);
         switch (in.type) {
             case TRP_NODE_UV:
-                run_uv(snapshot, in, points, lanes, count, out);
+                read_uv(snapshot, in.name, points, lanes, count, out);
                 break;
             case TRP_NODE_COLOR:
                 run_color(snapshot, in, points, lanes, count, out);

@@ -75,12 +75,17 @@ class ProgramScratch {
     std::vector<Register> registers_;
 };
 
+// Texture coordinates of the lanes listed, packed, with their derivatives by one pixel; 0 where the mesh has no such
+// set.
+void read_uv(const Snapshot& snapshot, const std::string& uv_set, const Points& points, const int32_t* lanes, int count,
+             ProgramScratch::Register& out);
+
 // Texture coordinates of a lane in the first UV set of its mesh; 0 where it has none.
 Vec2 first_uv(const PlacedSurface& surface, const Points& points, int lane);
 
 // Runs the material's program for the lanes listed, multiplies its outputs into `coefficients`, and replaces the
-// points' shading normals where it names one.
-void run_program(const Snapshot& snapshot, const CompiledMaterial& material, const int* lanes, int count,
+// points' shading normals where it names one. `lanes` holds kBatch numbers, those beyond the count any of the batch's.
+void run_program(const Snapshot& snapshot, const CompiledMaterial& material, const int32_t* lanes, int count,
                  Points& points, Coefficients& coefficients, ProgramScratch& scratch);
 
 }  // namespace trp

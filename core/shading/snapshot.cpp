@@ -188,8 +188,7 @@ PlacedSurface place(const RayScene& rays, uint32_t slot) {
     out.corners = surface.triangle_corners();
     out.faces = surface.triangle_faces();
     out.normals = surface.normals();
-    out.face_smooth = out.mesh->face_smooth.empty() ? nullptr : out.mesh->face_smooth.data();
-    out.face_materials = out.mesh->face_materials.empty() ? nullptr : out.mesh->face_materials.data();
+    out.face_smooth = surface.mixed_smooth() ? out.mesh->face_smooth.data() : nullptr;
     out.world_from_object = placement.world_from_object;
     Affine unmoved = placement.world_from_object;
     for (auto& row : unmoved.rows) row[3] = 0;
@@ -288,6 +287,8 @@ std::shared_ptr<const Snapshot> make_snapshot(const Scene& scene, std::shared_pt
         PlacedSurface placed = place(*snapshot->rays, slot);
         const Instance& instance = *scene.instances.find(placed.instance);
         placed.slot_materials = std::move(slots_of[placed.instance]);
+        if (placed.slot_materials.size() > 1 && !placed.mesh->face_materials.empty())
+            placed.face_materials = placed.mesh->face_materials.data();
         placed.color = instance.color;
         placed.index = instance.index;
         snapshot->surfaces[slot] = std::move(placed);

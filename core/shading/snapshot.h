@@ -21,9 +21,9 @@ struct PlacedSurface {
     const uint32_t* corners = nullptr;   // null: 3t … 3t + 2
     const uint32_t* faces = nullptr;     // null: t
     NormalLayer normals;
-    const uint8_t* face_smooth = nullptr;
-    const uint16_t* face_materials = nullptr;
-    std::vector<uint32_t> slot_materials;  // indices into Snapshot::materials, at least one
+    const uint8_t* face_smooth = nullptr;      // null: all faces are as `normals` says
+    const uint16_t* face_materials = nullptr;  // null: all faces are of slot 0
+    std::vector<uint32_t> slot_materials;      // indices into Snapshot::materials, at least one
     Affine world_from_object;
     bool baked = true, identity = true;
     float normal_sign = 1;  // −1 where the transform mirrors

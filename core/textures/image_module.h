@@ -1,6 +1,6 @@
-// The door to the image library. Pictures are read, filtered and written by a module of its own, loaded when it is
-// first needed: OpenImageIO with all that it links takes 0.3-0.7 s to load, which `triptych methods` and scenes without
-// textures need not pay, and a slimmer module can take its place.
+// The door to the image library. Pictures are read and written by a module of its own, loaded when a file is first
+// touched: OpenImageIO with all that it links takes 0.3-0.7 s to load, which `triptych methods` and scenes without
+// image files need not pay, and a slimmer module can take its place.
 //
 // The module throws std::runtime_error with a line that says what is wrong; it does not know the core's types.
 #pragma once
@@ -12,19 +12,20 @@
 
 namespace trp {
 
-// Where a texture comes from: a path, a file's bytes, or pixels (row 0 at the bottom). Read only while it is opened.
+// A picture file: a path, or the file's bytes.
 struct ImageSource {
     std::string path;
-    const unsigned char* file = nullptr;
+    const unsigned char* file = nullptr;  // null: the path counts
     size_t file_size = 0;
-    const float* pixels = nullptr;
-    uint32_t width = 0, height = 0, channels = 0;
-    int32_t color_space = 0, wrap_u = 0, wrap_v = 0, filter = 0;  // TRP_COLOR_SPACE_…, TRP_WRAP_…, TRP_FILTER_…
 };
 
-// Texture coordinates, v up, with their derivatives by one pixel to the right and one pixel up.
-struct TextureCoordinates {
-    const float *u, *v, *dudx, *dvdx, *dudy, *dvdy;
+// A picture as its file has it: interleaved, row 0 at the bottom, straight alpha, 1 to 4 channels (grey, grey and
+// alpha, RGB, RGBA). One of the two arrays holds it.
+struct PixelArray {
+    uint32_t width = 0, height = 0, channels = 0;
+    bool srgb = false;               // as the file says; not so for alpha
+    std::vector<uint16_t> integers;  // of files with integers; 65535 is 1
+    std::vector<float> floats;       // of all others
 };
 
 // A picture to write: interleaved floats, row 0 at the top, in a window of a larger picture.
@@ -35,14 +36,12 @@ struct Picture {
     std::vector<float> values;  // window_height · window_width · channels
 };
 
+// Any thread.
 class ImageModule {
   public:
     virtual ~ImageModule() = default;
-    // Reads the whole picture into the cache. The handle is never 0.
-    virtual uint64_t open(const ImageSource& source) = 0;
-    virtual void close(uint64_t texture) = 0;
-    // Linear Rec. 709 with straight alpha, filtered over the footprint, to r, g, b, a[count]. Any thread.
-    virtual void sample(uint64_t texture, size_t count, const TextureCoordinates& at, float* const rgba[4]) = 0;
+    // Refuses pictures of more than `most_pixels`.
+    virtual PixelArray read(const ImageSource& source, uint64_t most_pixels) = 0;
     // OpenEXR, 32-bit float.
     virtual void write_exr(const std::string& path, const Picture& picture) = 0;
     // PNG, 8 bits; values are already display-referred, 0 to 1, straight alpha.

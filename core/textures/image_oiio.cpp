@@ -1,211 +1,76 @@
-// The image module on OpenImageIO: its texture system for filtered reading, its writers for pictures.
+// The image module on OpenImageIO: its readers and writers.
 #include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imagecache.h>
 #include <OpenImageIO/imageio.h>
-#include <OpenImageIO/texture.h>
 
 #include <algorithm>
-#include <atomic>
-#include <cmath>
 #include <fstream>
-#include <map>
 #include <memory>
-#include <mutex>
 #include <stdexcept>
 
 #include "textures/image_module.h"
-#include "triptych/triptych.h"
 
 namespace trp {
 namespace {
-
-float linear_from_srgb(float c) {
-    return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
-}
 
 [[noreturn]] void fail(const std::string& text) {
     throw std::runtime_error(text);
 }
 
-// A picture in linear floats, row 0 at the top, straight alpha.
-struct LinearImage {
-    OIIO::ImageSpec spec;
-    std::vector<float> values;
-};
-
-bool is_srgb(const OIIO::ImageSpec& spec, int32_t color_space) {
-    if (color_space != TRP_COLOR_SPACE_AUTO) return color_space == TRP_COLOR_SPACE_SRGB;
-    return spec.format.basetype == OIIO::TypeDesc::UINT8 || spec.get_string_attribute("oiio:ColorSpace") == "sRGB";
-}
-
-LinearImage read_file(const ImageSource& source) {
-    OIIO::ImageSpec config;
-    config.attribute("oiio:UnassociatedAlpha", 1);
-    std::unique_ptr<OIIO::ImageInput> input;
-    OIIO::Filesystem::IOMemReader memory(const_cast<unsigned char*>(source.file), source.file_size);
-    if (source.file) {
-        // Readers are chosen by name; try each that can read from memory until one knows these bytes.
+// Readers are chosen by name; each that can read from memory is tried until one knows these bytes.
+std::unique_ptr<OIIO::ImageInput> open_memory(OIIO::Filesystem::IOMemReader& memory, const OIIO::ImageSpec& config) {
+    for (const char* name : {"a.png", "a.jpg", "a.exr", "a.tif", "a.hdr", "a.webp", "a.tga", "a.bmp", "a.gif"}) {
+        memory.seek(0);
+        auto input = OIIO::ImageInput::create(name, false, nullptr, &memory);
         OIIO::ImageSpec spec;
-        for (const char* name : {"a.png", "a.jpg", "a.exr", "a.tif", "a.hdr", "a.webp", "a.tga", "a.bmp", "a.gif"}) {
-            memory.seek(0);
-            input = OIIO::ImageInput::create(name, false, nullptr, &memory);
-            if (input && input->set_ioproxy(&memory) && input->open(name, spec, config)) break;
-            if (input) input->geterror();
-            input.reset();
-        }
-        OIIO::geterror();
-        if (!input) fail("no known picture format");
-    } else {
-        input = OIIO::ImageInput::open(source.path, &config);
-        if (!input) fail(OIIO::geterror());
+        if (input && input->set_ioproxy(&memory) && input->open(name, spec, config)) return input;
+        if (input) input->geterror();
     }
-    LinearImage image;
-    image.spec = input->spec();
-    const OIIO::ImageSpec& spec = image.spec;
-    if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1 || spec.width > 65536 ||
-        spec.height > 65536)
-        fail("a picture of " + std::to_string(spec.width) + " x " + std::to_string(spec.height));
-    const int channels = std::min(spec.nchannels, 4);
-    image.values.resize(static_cast<size_t>(spec.width) * spec.height * channels);
-    if (!input->read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, image.values.data())) fail(input->geterror());
-    if (is_srgb(spec, source.color_space)) {
-        const int alpha = channels == 2 || channels == 4 ? channels - 1 : -1;
-        for (size_t i = 0; i < image.values.size(); ++i)
-            if (static_cast<int>(i % channels) != alpha) image.values[i] = linear_from_srgb(image.values[i]);
-    }
-    image.spec.nchannels = channels;
-    return image;
+    OIIO::geterror();
+    return nullptr;
 }
 
-LinearImage read_pixels(const ImageSource& source) {
-    LinearImage image;
-    image.spec = OIIO::ImageSpec(static_cast<int>(source.width), static_cast<int>(source.height),
-                                 static_cast<int>(source.channels), OIIO::TypeDesc::FLOAT);
-    const size_t row = static_cast<size_t>(source.width) * source.channels;
-    image.values.resize(row * source.height);
-    for (uint32_t y = 0; y < source.height; ++y)
-        std::copy_n(source.pixels + y * row, row,
-                    image.values.begin() + static_cast<ptrdiff_t>((source.height - 1 - y) * row));
-    if (source.color_space == TRP_COLOR_SPACE_SRGB) {
-        const uint32_t alpha = source.channels == 2 || source.channels == 4 ? source.channels - 1 : source.channels;
-        for (size_t i = 0; i < image.values.size(); ++i)
-            if (i % source.channels != alpha) image.values[i] = linear_from_srgb(image.values[i]);
-    }
-    return image;
-}
-
-// Pictures that the texture cache is reading, by the name under which it knows them.
-std::mutex g_reading_mutex;
-std::map<std::string, std::shared_ptr<const LinearImage>> g_reading;
-
-// What the texture cache reads from: a LinearImage in 16-bit floats (32-bit where the file has more than 8 bits), so
-// that filtering happens in linear light.
-class LinearInput final : public OIIO::ImageInput {
-  public:
-    static OIIO::ImageInput* create() { return new LinearInput; }
-    const char* format_name() const override { return "triptych"; }
-    bool open(const std::string& name, OIIO::ImageSpec& spec) override {
-        {
-            const std::lock_guard lock(g_reading_mutex);
-            const auto it = g_reading.find(name);
-            if (it == g_reading.end()) return false;
-            image_ = it->second;
-        }
-        const auto& file = image_->spec;
-        const bool small = file.format.basetype == OIIO::TypeDesc::UINT8;
-        m_spec = OIIO::ImageSpec(file.width, file.height, file.nchannels,
-                                 small ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT);
-        spec = m_spec;
-        return true;
-    }
-    bool close() override {
-        image_.reset();
-        return true;
-    }
-    bool read_native_scanline(int, int, int y, int, void* data) override {
-        const size_t row = static_cast<size_t>(m_spec.width) * m_spec.nchannels;
-        return OIIO::convert_pixel_values(OIIO::TypeDesc::FLOAT, image_->values.data() + y * row, m_spec.format, data,
-                                          static_cast<int>(row));
-    }
-
-  private:
-    std::shared_ptr<const LinearImage> image_;
-};
-
-struct OpenTexture {
-    OIIO::ustring name;
-    OIIO::TextureSystem::TextureHandle* handle = nullptr;
-    OIIO::TextureOpt options;
-    int channels = 0;
-};
-
-OIIO::TextureOpt::Wrap wrap_mode(int32_t wrap) {
-    switch (wrap) {
-        case TRP_WRAP_CLAMP:
-            return OIIO::TextureOpt::WrapClamp;
-        case TRP_WRAP_MIRROR:
-            return OIIO::TextureOpt::WrapMirror;
-        case TRP_WRAP_BLACK:
-            return OIIO::TextureOpt::WrapBlack;
-        default:
-            return OIIO::TextureOpt::WrapPeriodic;
-    }
+bool has_integers(const OIIO::TypeDesc& type) {
+    return type.basetype >= OIIO::TypeDesc::UINT8 && type.basetype <= OIIO::TypeDesc::INT64;
 }
 
 class OiioModule final : public ImageModule {
   public:
-    OiioModule() : system_(OIIO::TextureSystem::create(false)) {
-        OIIO::attribute("threads", 1);
-        system_->attribute("automip", 1);
-        system_->attribute("autotile", 64);
-        system_->attribute("max_memory_MB", 4096.0f);
-    }
-    ~OiioModule() override { OIIO::TextureSystem::destroy(system_, true); }
+    OiioModule() { OIIO::attribute("threads", 1); }
 
-    uint64_t open(const ImageSource& source) override {
-        auto image = std::make_shared<const LinearImage>(source.pixels ? read_pixels(source) : read_file(source));
-        auto texture = std::make_unique<OpenTexture>();
-        const std::string name = "triptych:" + std::to_string(++names_);
-        texture->name = OIIO::ustring(name);
-        texture->channels = image->spec.nchannels;
-        texture->options.swrap = wrap_mode(source.wrap_u);
-        texture->options.twrap = wrap_mode(source.wrap_v);
-        texture->options.fill = 1;
-        const bool nearest = source.filter == TRP_FILTER_NEAREST;
-        texture->options.interpmode = nearest ? OIIO::TextureOpt::InterpClosest : OIIO::TextureOpt::InterpBilinear;
-        if (nearest) texture->options.mipmode = OIIO::TextureOpt::MipModeNoMIP;
-        {
-            const std::lock_guard lock(g_reading_mutex);
-            g_reading[name] = image;
-        }
-        system_->imagecache()->add_file(texture->name, LinearInput::create);
-        texture->handle = system_->get_texture_handle(texture->name);
-        if (!texture->handle || !system_->good(texture->handle)) fail(system_->geterror());
-        return reinterpret_cast<uint64_t>(texture.release());
-    }
+    PixelArray read(const ImageSource& source, uint64_t most_pixels) override {
+        OIIO::ImageSpec config;
+        config.attribute("oiio:UnassociatedAlpha", 1);
+        OIIO::Filesystem::IOMemReader memory(const_cast<unsigned char*>(source.file), source.file_size);
+        const std::unique_ptr<OIIO::ImageInput> input =
+            source.file ? open_memory(memory, config) : OIIO::ImageInput::open(source.path, &config);
+        if (!input) fail(source.file ? "no known picture format" : OIIO::geterror());
+        const OIIO::ImageSpec& spec = input->spec();
+        const std::string size = std::to_string(spec.width) + " x " + std::to_string(spec.height) + " pixels";
+        if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1) fail("a picture of " + size);
+        if (static_cast<uint64_t>(spec.width) * static_cast<uint64_t>(spec.height) > most_pixels)
+            fail("a picture of " + size + "; at most " + std::to_string(most_pixels) + " pixels can be held");
 
-    void close(uint64_t handle) override {
-        const std::unique_ptr<OpenTexture> texture(reinterpret_cast<OpenTexture*>(handle));
-        system_->invalidate(texture->name, true);
-        const std::lock_guard lock(g_reading_mutex);
-        g_reading.erase(texture->name.string());
-    }
-
-    void sample(uint64_t handle, size_t count, const TextureCoordinates& at, float* const rgba[4]) override {
-        const auto& texture = *reinterpret_cast<const OpenTexture*>(handle);
-        auto* thread = system_->get_perthread_info();
-        OIIO::TextureOpt options = texture.options;
-        for (size_t i = 0; i < count; ++i) {
-            float value[4] = {0, 0, 0, 1};
-            // The texture system has v down.
-            system_->texture(texture.handle, thread, options, at.u[i], 1 - at.v[i], at.dudx[i], -at.dvdx[i], at.dudy[i],
-                             -at.dvdy[i], texture.channels, value);
-            if (texture.channels < 3) {  // grey, with or without alpha
-                value[3] = texture.channels == 2 ? value[1] : 1;
-                value[1] = value[2] = value[0];
-            }
-            for (int c = 0; c < 4; ++c) rgba[c][i] = value[c];
-        }
+        PixelArray out;
+        out.width = static_cast<uint32_t>(spec.width);
+        out.height = static_cast<uint32_t>(spec.height);
+        out.channels = static_cast<uint32_t>(std::min(spec.nchannels, 4));
+        out.srgb =
+            spec.format.basetype == OIIO::TypeDesc::UINT8 || spec.get_string_attribute("oiio:ColorSpace") == "sRGB";
+        const size_t row = size_t{out.width} * out.channels;
+        const bool integers = has_integers(spec.format);
+        if (integers)
+            out.integers.resize(row * out.height);
+        else
+            out.floats.resize(row * out.height);
+        char* const values =
+            integers ? reinterpret_cast<char*>(out.integers.data()) : reinterpret_cast<char*>(out.floats.data());
+        const auto stride = static_cast<OIIO::stride_t>(row * (integers ? sizeof(uint16_t) : sizeof(float)));
+        // Upwards from the last row, which the file has first.
+        if (!input->read_image(0, 0, 0, static_cast<int>(out.channels),
+                               integers ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::FLOAT,
+                               values + stride * (spec.height - 1), OIIO::AutoStride, -stride))
+            fail(input->geterror());
+        return out;
     }
 
     void write_exr(const std::string& path, const Picture& picture) override {
@@ -246,9 +111,6 @@ class OiioModule final : public ImageModule {
         file.close();
         if (!file) fail("the file could not be written whole");
     }
-
-    OIIO::TextureSystem* system_;
-    std::atomic<uint64_t> names_{0};
 };
 
 }  // namespace

@@ -6,27 +6,36 @@
 
 namespace trp {
 
-OpenTexture::OpenTexture(std::shared_ptr<const Texture> texture) : texture_(std::move(texture)) {
-    ImageSource source;
-    source.path = texture_->path;
-    if (!texture_->file.empty()) {
-        source.file = texture_->file.data();
-        source.file_size = texture_->file.size();
+namespace {
+
+MipPyramid read_pyramid(const Texture& texture) {
+    bool srgb = texture.color_space == TRP_COLOR_SPACE_SRGB;
+    PixelArray picture;
+    if (!texture.pixels.empty()) {
+        if (uint64_t{texture.width} * texture.height > kMostTexturePixels)
+            throw std::runtime_error(fmt::format("a picture of {} x {} pixels; at most {} pixels can be held",
+                                                 texture.width, texture.height, kMostTexturePixels));
+        picture.width = texture.width;
+        picture.height = texture.height;
+        picture.channels = texture.channels;
+        picture.floats = texture.pixels;
+    } else {
+        ImageSource source;
+        source.path = texture.path;
+        if (!texture.file.empty()) {
+            source.file = texture.file.data();
+            source.file_size = texture.file.size();
+        }
+        picture = image_module().read(source, kMostTexturePixels);
+        if (texture.color_space == TRP_COLOR_SPACE_AUTO) srgb = picture.srgb;
     }
-    if (!texture_->pixels.empty()) source.pixels = texture_->pixels.data();
-    source.width = texture_->width;
-    source.height = texture_->height;
-    source.channels = texture_->channels;
-    source.color_space = texture_->color_space;
-    source.wrap_u = texture_->wrap_u;
-    source.wrap_v = texture_->wrap_v;
-    source.filter = texture_->filter;
-    handle_ = image_module().open(source);
+    return MipPyramid(picture, srgb);
 }
 
-OpenTexture::~OpenTexture() {
-    image_module().close(handle_);
-}
+}  // namespace
+
+OpenTexture::OpenTexture(std::shared_ptr<const Texture> texture)
+    : texture_(std::move(texture)), pyramid_(read_pyramid(*texture_)) {}
 
 TextureSet open_textures(const std::map<uint32_t, std::shared_ptr<const Texture>>& wanted, const TextureSet& previous,
                          std::vector<Warning>& warnings) {

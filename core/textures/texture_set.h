@@ -7,26 +7,24 @@
 
 #include "base/error.h"
 #include "scene/items.h"
-#include "textures/image_module.h"
+#include "textures/mip_pyramid.h"
 
 namespace trp {
 
 class OpenTexture {
   public:
-    // Throws std::runtime_error where the picture cannot be read.
+    // Reads the picture; throws std::runtime_error where it cannot be read.
     explicit OpenTexture(std::shared_ptr<const Texture> texture);
-    ~OpenTexture();
-    OpenTexture(const OpenTexture&) = delete;
-    OpenTexture& operator=(const OpenTexture&) = delete;
 
     const Texture* texture() const { return texture_.get(); }
+    // Linear Rec. 709 with straight alpha, filtered over the footprints, to r, g, b, a[count]. Any thread.
     void sample(size_t count, const TextureCoordinates& at, float* const rgba[4]) const {
-        image_module().sample(handle_, count, at, rgba);
+        filter_texture(pyramid_, {texture_->wrap_u, texture_->wrap_v, texture_->filter}, count, at, rgba);
     }
 
   private:
     std::shared_ptr<const Texture> texture_;
-    uint64_t handle_;
+    MipPyramid pyramid_;
 };
 
 // By texture id; null for a picture that could not be read, in whose place magenta is shown.

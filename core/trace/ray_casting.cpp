@@ -27,7 +27,7 @@ bool is_world(const ReadyLight& light) {
 
 // What a thread works with; large, so made once for a tile.
 struct Workspace {
-    explicit Workspace(const PassList& passes) : sums(passes) {}
+    explicit Workspace(const PassList& passes) : sums(passes) { prepare(rays, kSeenByCamera); }
     BlockRays rays;
     Points points;
     Coefficients coefficients;
@@ -184,7 +184,7 @@ void Caster::layers(uint32_t block_x, uint32_t block_y, uint32_t sample, bool fi
     Coherence coherence = Coherence::coherent;
     for (int layer = 0; layer < kGreatestLayers; ++layer) {
         const auto before = Clock::now();
-        trace_primary(snapshot.rays->embree(), w.active, kSeenByCamera, coherence, w.rays);
+        trace_primary(snapshot.rays->embree(), w.active, coherence, w.rays);
         read_hits(w.rays, w.active, w.points);
         if (sees_lights) add_seen_lights(w);
         primary_time += nanoseconds(before, Clock::now());

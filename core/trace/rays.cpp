@@ -1,6 +1,6 @@
 #include "trace/rays.h"
 
-#include <cmath>
+#include <algorithm>
 #include <numbers>
 
 #include "film/film.h"
@@ -10,7 +10,7 @@
 #include "hwy/foreach_target.h"
 
 #include "base/sobol-inl.h"
-#include "hwy/contrib/math/math-inl.h"
+#include "shading/equation-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace trp::HWY_NAMESPACE {
@@ -133,16 +133,62 @@ void make_rays(const RayMaker& maker, uint32_t block_x, uint32_t block_y, uint32
     }
 }
 
-void read_viewers(const BlockRays& rays, Points& points) {
-    const hn::ScalableTag<float> d;
-    using V = hn::Vec<decltype(d)>;
+void read_hit_lanes(const BlockRays& rays, const uint8_t* active, Points& points) {
+    const hn::CappedTag<float, 16> d;
+    const hn::RebindToSigned<decltype(d)> di;
+    const auto none = hn::Set(di, static_cast<int32_t>(RTC_INVALID_GEOMETRY_ID)),
+               no_slot = hn::Set(di, static_cast<int32_t>(kNoSlot));
+    auto load = [&](const unsigned* ids) { return hn::Load(di, reinterpret_cast<const int32_t*>(ids)); };
+    auto store = [&](auto ids, uint32_t* out) { hn::Store(ids, di, reinterpret_cast<int32_t*>(out)); };
+    const auto zero = hn::Zero(d);
     for (int i = 0; i < kBatch; i += static_cast<int>(hn::Lanes(d))) {
-        const V x = hn::Load(d, rays.direction.x + i), y = hn::Load(d, rays.direction.y + i),
-                z = hn::Load(d, rays.direction.z + i);
-        const V scale = hn::Div(hn::Set(d, -1.0f), hn::Sqrt(hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)))));
-        hn::Store(hn::Mul(x, scale), d, points.to_viewer.x + i);
-        hn::Store(hn::Mul(y, scale), d, points.to_viewer.y + i);
-        hn::Store(hn::Mul(z, scale), d, points.to_viewer.z + i);
+        const RTCHit16& hit = rays.packets[i >> 4].hit;
+        const int k = i & 15;
+        alignas(64) int32_t is_active[HWY_MAX_BYTES / sizeof(int32_t)];
+        for (size_t lane = 0; lane < hn::Lanes(d); ++lane) is_active[lane] = active[i + lane];
+        const auto geometry = load(hit.geomID + k), instance = load(hit.instID[0] + k);
+        const auto met = hn::AndNot(hn::Eq(geometry, none), hn::Ne(hn::Load(di, is_active), hn::Zero(di)));
+        const auto slot = hn::IfThenElse(hn::Ne(instance, none), instance, geometry);
+        store(hn::IfThenElse(met, slot, no_slot), points.slot + i);
+        store(load(hit.primID + k), points.triangle + i);
+        hn::Store(hn::Load(d, hit.u + k), d, points.b1 + i);
+        hn::Store(hn::Load(d, hit.v + k), d, points.b2 + i);
+        hn::Store(zero, d, points.time + i);
+        const auto direction = load3(d, rays.direction, i);
+        const auto scale = hn::Div(hn::Set(d, -1.0f), hn::Sqrt(dot3(direction, direction)));
+        store3(d, direction * scale, points.to_viewer, i);
+    }
+}
+
+void make_footprint_lanes(const RayMaker& maker, const BlockRays& rays, Points& points) {
+    const hn::CappedTag<float, 16> d;
+    using V = hn::Vec<decltype(d)>;
+    const View& view = maker.view;
+    const V one = hn::Set(d, 1.0f), tiny = hn::Set(d, 1e-37f);
+    for (int i = 0; i < kBatch; i += static_cast<int>(hn::Lanes(d))) {
+        // Gradients of b1 and b2 in the plane of the triangle, its edges scaled to 1 against underflow.
+        Vector3<V> e1 = load3(d, points.edge1, i), e2 = load3(d, points.edge2, i);
+        const V scale = hn::Div(one, hn::Max(hn::Max(greatest_component(e1), greatest_component(e2)), tiny));
+        e1 = e1 * scale, e2 = e2 * scale;
+        const Vector3<V> normal = cross3(e1, e2);
+        const V n2 = dot3(normal, normal);
+        const V inverse = hn::IfThenElseZero(hn::Gt(n2, hn::Zero(d)), hn::Div(scale, hn::Max(n2, tiny)));
+        const Vector3<V> gradient1 = cross3(e2, normal) * inverse, gradient2 = cross3(normal, e1) * inverse;
+
+        const Vector3<V> n = load3(d, points.geometric_normal, i), direction = load3(d, rays.direction, i);
+        const V slope = dot3(n, direction);
+        const auto steep = hn::Gt(hn::Abs(slope), hn::Set(d, 1e-8f));
+        const V along = hn::IfThenElseZero(steep, hn::Div(one, slope));
+        const V depth = view.perspective ? hn::Load(d, rays.packets[i >> 4].ray.tfar + (i & 15)) : one;
+        auto footprint = [&](const Vec3& step, float* b1, float* b2) {
+            // The neighbour's ray moves by `across` at this depth, and on along its direction to the plane again.
+            const Vector3<V> across = broadcast(d, step * maker.footprint) * depth;
+            const Vector3<V> moved = across - direction * hn::Mul(dot3(n, across), along);
+            hn::Store(dot3(gradient1, moved), d, b1 + i);
+            hn::Store(dot3(gradient2, moved), d, b2 + i);
+        };
+        footprint(view.x * view.step_x, points.b1_dx, points.b2_dx);
+        footprint(view.y * view.step_y, points.b1_dy, points.b2_dy);
     }
 }
 
@@ -153,7 +199,8 @@ HWY_AFTER_NAMESPACE();
 namespace trp {
 HWY_EXPORT(random_pair_lanes);
 HWY_EXPORT(make_rays);
-HWY_EXPORT(read_viewers);
+HWY_EXPORT(read_hit_lanes);
+HWY_EXPORT(make_footprint_lanes);
 
 void random_pair(uint32_t block_x, uint32_t block_y, uint32_t seed, uint32_t sample, uint32_t pair, float* u,
                  float* v) {
@@ -164,53 +211,36 @@ void make_primary_rays(const RayMaker& maker, uint32_t block_x, uint32_t block_y
     HWY_DYNAMIC_DISPATCH(make_rays)(maker, block_x, block_y, sample, rays);
 }
 
-void trace_primary(RTCScene scene, const uint8_t* active, unsigned mask, Coherence coherence, BlockRays& rays) {
+void prepare(BlockRays& rays, unsigned mask) {
+    for (RTCRayHit16& packet : rays.packets) {
+        std::fill_n(packet.ray.time, 16, 0.0f);
+        std::fill_n(packet.ray.mask, 16, mask);
+        std::fill_n(packet.ray.flags, 16, 0u);
+        std::fill_n(packet.ray.id, 16, 0u);
+    }
+}
+
+void trace_primary(RTCScene scene, const uint8_t* active, Coherence coherence, BlockRays& rays) {
     for (int p = 0; p < kPackets; ++p) {
         RTCRayHit16& packet = rays.packets[p];
         alignas(64) int valid[16];
         int any = 0;
         for (int k = 0; k < 16; ++k) {
-            valid[k] = active[16 * p + k] ? -1 : 0;
+            valid[k] = -active[16 * p + k];
             any |= valid[k];
-            packet.ray.time[k] = 0;
-            packet.ray.mask[k] = mask;
-            packet.ray.flags[k] = 0;
-            packet.ray.id[k] = 0;
-            packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
-            packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
         }
+        std::fill_n(packet.hit.geomID, 16, RTC_INVALID_GEOMETRY_ID);
+        std::fill_n(packet.hit.instID[0], 16, RTC_INVALID_GEOMETRY_ID);
         if (any) intersect16(scene, valid, packet, coherence);
     }
 }
 
 void read_hits(const BlockRays& rays, const uint8_t* active, Points& points) {
-    for (int i = 0; i < kBatch; ++i) {
-        const RTCHit16& hit = rays.packets[i >> 4].hit;
-        const int k = i & 15;
-        const uint32_t slot = hit.instID[0][k] != RTC_INVALID_GEOMETRY_ID ? hit.instID[0][k] : hit.geomID[k];
-        points.slot[i] = active[i] && hit.geomID[k] != RTC_INVALID_GEOMETRY_ID ? slot : kNoSlot;
-        points.triangle[i] = hit.primID[k];
-        points.b1[i] = hit.u[k];
-        points.b2[i] = hit.v[k];
-        points.time[i] = 0;
-    }
-    HWY_DYNAMIC_DISPATCH(read_viewers)(rays, points);
+    HWY_DYNAMIC_DISPATCH(read_hit_lanes)(rays, active, points);
 }
 
 void make_footprints(const RayMaker& maker, const BlockRays& rays, Points& points) {
-    const View& view = maker.view;
-    const Vec3 step[2] = {view.x * (view.step_x * maker.footprint), view.y * (view.step_y * maker.footprint)};
-    for (int i = 0; i < kBatch; ++i) {
-        if (points.slot[i] == kNoSlot) continue;
-        const Vec3 n = points.geometric_normal.get(i), direction = rays.direction.get(i);
-        const float slope = n.dot(direction);
-        for (int k = 0; k < 2; ++k) {
-            // The neighbour's ray moves by `across` at this depth, and on along its direction to the plane again.
-            const Vec3 across = view.perspective ? step[k] * hit_depth(rays, i) : step[k];
-            const Vec3 moved = std::abs(slope) > 1e-8f ? across - direction * (n.dot(across) / slope) : across;
-            (k == 0 ? points.position_dx : points.position_dy).set(i, moved);
-        }
-    }
+    HWY_DYNAMIC_DISPATCH(make_footprint_lanes)(maker, rays, points);
 }
 
 }  // namespace trp

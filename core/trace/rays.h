@@ -29,10 +29,13 @@ struct RayMaker {
 // belong to the lights.
 void random_pair(uint32_t block_x, uint32_t block_y, uint32_t seed, uint32_t sample, uint32_t pair, float* u, float* v);
 
+// What all rays of a block have in common, once: they meet what `mask` names.
+void prepare(BlockRays& rays, unsigned mask);
+
 void make_primary_rays(const RayMaker& maker, uint32_t block_x, uint32_t block_y, uint32_t sample, BlockRays& rays);
 
-// Traces all packets for the lanes that `active` names, meeting what `mask` names.
-void trace_primary(RTCScene scene, const uint8_t* active, unsigned mask, Coherence coherence, BlockRays& rays);
+// Traces all packets for the lanes where `active` is 1.
+void trace_primary(RTCScene scene, const uint8_t* active, Coherence coherence, BlockRays& rays);
 
 // Slot, triangle, barycentrics and the direction to the viewer; kNoSlot where nothing was hit or the lane is not
 // active.

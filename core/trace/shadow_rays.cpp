@@ -75,6 +75,7 @@ uint64_t filter_shadows(const Snapshot& snapshot, const Points& points, const Li
                         ShadowScratch& shadow, ProgramScratch& program) {
     Lanes reached;  // ray parameter that each lane has come to
     std::fill_n(reached, kBatch, 0.0f);
+    shadow.points.clear_footprints();
     uint64_t rays = 0;
     for (int layer = 0; layer < kGreatestLayers; ++layer) {
         bool any = false;
@@ -103,8 +104,6 @@ uint64_t filter_shadows(const Snapshot& snapshot, const Points& points, const Li
                 hits.b2[i] = packet.hit.v[k];
                 hits.time[i] = points.time[i];
                 hits.to_viewer.set(i, -samples.direction.get(i));
-                hits.position_dx.set(i, {0, 0, 0});
-                hits.position_dy.set(i, {0, 0, 0});
                 // Past the surface by as much as rounding can place it wrong.
                 if (hit) reached[i] = packet.ray.tfar[k] * (1 + 4e-7f);
                 any |= hit;
