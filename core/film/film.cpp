@@ -53,10 +53,11 @@ Film::Film(const Window& window, const PassList& passes) : window_(window), pass
     first_block_y_ = window.y / kBlockSide;
     blocks_across_ = (window.x + window.w - 1) / kBlockSide - first_block_x_ + 1;
     const uint32_t blocks_up = (window.y + window.h - 1) / kBlockSide - first_block_y_ + 1;
-    block_samples_.assign(size_t{blocks_across_} * blocks_up, 0);
-    const size_t count = size_t{window.w} * window.h * static_cast<size_t>(passes.channels());
+    const size_t blocks = size_t{blocks_across_} * blocks_up;
+    block_samples_.assign(blocks, 0);
+    const size_t block = kBatch * static_cast<size_t>(passes.channels());
     // Zeroed pages come from the system as they are first touched, by the threads that fill them.
-    values_.reset(static_cast<float*>(std::calloc(count, sizeof(float))));
+    values_.reset(static_cast<float*>(std::calloc(blocks * block, sizeof(float))));
     if (!values_)
         fail(TRP_ERROR_MEMORY, "no memory for a film of {} x {} pixels with {} channels", window.w, window.h,
              passes.channels());
@@ -66,32 +67,38 @@ uint32_t Film::block_index(uint32_t block_x, uint32_t block_y) const {
     return (block_y - first_block_y_) * blocks_across_ + block_x - first_block_x_;
 }
 
+const float* Film::channel(uint32_t block, PassId pass) const {
+    const auto channels = static_cast<size_t>(passes_.channels());
+    return &values_[kBatch * (block * channels + static_cast<size_t>(passes_.first_channel(pass)))];
+}
+
 void Film::add_block(uint32_t block_x, uint32_t block_y, const BlockSums& sums, uint32_t samples, bool first) {
-    const int channels = passes_.channels();
-    for (int lane = 0; lane < kBatch; ++lane) {
-        const uint32_t x = block_x * kBlockSide + lane_x(lane), y = block_y * kBlockSide + lane_y(lane);
-        if (x < window_.x || y < window_.y || x - window_.x >= window_.w || y - window_.y >= window_.h) continue;
-        float* pixel = &values_[(size_t{y - window_.y} * window_.w + (x - window_.x)) * static_cast<size_t>(channels)];
-        for (const PassId pass : passes_.order()) {
-            const int begin = passes_.first_channel(pass), end = begin + static_cast<int>(channel_count(pass));
-            if (!kPasses[pass].averaged && !first) continue;
-            for (int c = begin; c < end; ++c) pixel[c] += sums.values_[c].data[lane];
-        }
+    const uint32_t block = block_index(block_x, block_y);
+    float* to = &values_[size_t{block} * kBatch * static_cast<size_t>(passes_.channels())];
+    for (const PassId pass : passes_.order()) {
+        const int begin = passes_.first_channel(pass), end = begin + static_cast<int>(channel_count(pass));
+        if (!kPasses[pass].averaged && !first) continue;
+        for (int c = begin; c < end; ++c)
+            for (int lane = 0; lane < kBatch; ++lane) to[c * kBatch + lane] += sums.values_[c].data[lane];
     }
-    block_samples_[block_index(block_x, block_y)] += samples;
+    block_samples_[block] += samples;
 }
 
 void Film::read(PassId pass, uint32_t x, uint32_t y, uint32_t w, uint32_t h, float* out) const {
-    const auto channels = static_cast<size_t>(passes_.channels());
-    const size_t begin = static_cast<size_t>(passes_.first_channel(pass)), count = channel_count(pass);
+    const size_t count = channel_count(pass);
     for (uint32_t row = y; row < y + h; ++row)
-        for (uint32_t column = x; column < x + w; ++column) {
-            const uint32_t samples = block_samples_[block_index(column / kBlockSide, row / kBlockSide)];
+        for (uint32_t begin = x; begin < x + w;) {
+            // The part of the row that lies in one block.
+            const uint32_t end = std::min((begin / kBlockSide + 1) * kBlockSide, x + w);
+            const uint32_t block = block_index(begin / kBlockSide, row / kBlockSide), samples = block_samples_[block];
             const float scale = kPasses[pass].averaged && samples ? 1 / static_cast<float>(samples) : 1;
-            const float* pixel =
-                &values_[(size_t{row - window_.y} * window_.w + (column - window_.x)) * channels + begin];
-            for (size_t c = 0; c < count; ++c)
-                *out++ = pass == kSampleCount ? static_cast<float>(samples) : pixel[c] * scale;
+            const float* values = channel(block, pass);
+            for (uint32_t column = begin; column < end; ++column) {
+                const uint32_t lane = lane_at(column % kBlockSide, row % kBlockSide);
+                for (size_t c = 0; c < count; ++c)
+                    *out++ = pass == kSampleCount ? static_cast<float>(samples) : values[c * kBatch + lane] * scale;
+            }
+            begin = end;
         }
 }
 

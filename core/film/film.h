@@ -14,12 +14,9 @@ namespace trp {
 
 inline constexpr uint32_t kBlockSide = 16;
 
-// The pixel of a lane within its block: packets of 16 lanes are 4 × 4 pixels, and so are the 16 packets of a block.
-inline uint32_t lane_x(int lane) {
-    return static_cast<uint32_t>(((lane >> 4) & 3) * 4 + (lane & 3));
-}
-inline uint32_t lane_y(int lane) {
-    return static_cast<uint32_t>((lane >> 6) * 4 + ((lane >> 2) & 3));
+// The lane of a pixel within its block: packets of 16 lanes are 4 × 4 pixels, and so are the 16 packets of a block.
+inline uint32_t lane_at(uint32_t x, uint32_t y) {
+    return (y >> 2) * 64 + (x >> 2) * 16 + (y & 3) * 4 + (x & 3);
 }
 
 // The part of a picture that is rendered; pixels count from the bottom left.
@@ -76,13 +73,14 @@ class Film {
 
     const Window& window() const { return window_; }
     const PassList& passes() const { return passes_; }
-    // Adds a block, whose grid place is (block_x, block_y); lanes outside the window are dropped.
+    // Adds a block, whose grid place is (block_x, block_y).
     void add_block(uint32_t block_x, uint32_t block_y, const BlockSums& sums, uint32_t samples, bool first);
     // The pixels of a pass, channels interleaved; sums are divided by the number of samples.
     void read(PassId pass, uint32_t x, uint32_t y, uint32_t w, uint32_t h, float* out) const;
 
   private:
     uint32_t block_index(uint32_t block_x, uint32_t block_y) const;
+    const float* channel(uint32_t block, PassId pass) const;  // the pass's first
 
     Window window_;
     PassList passes_;
@@ -91,7 +89,7 @@ class Film {
     struct Free {
         void operator()(float* p) const;
     };
-    std::unique_ptr<float[], Free> values_;  // pixel by pixel, the channels of all passes together
+    std::unique_ptr<float[], Free> values_;  // block by block, and channel by channel as in BlockSums
 };
 
 // Throws Error unless 1 ≤ width, height ≤ 65536, the window lies within, and its pixels can be held.
