@@ -23,10 +23,17 @@ bool set_world(const GltfFile& file, const Fields& world, TextureLoader& texture
     world.read("radiance", desc.radiance, 3, 3);
     world.read("visible_camera", desc.visible_camera);
     world.read("light", desc.light);
-    float rotation = 0.0f;
-    world.read("rotation", rotation);
-    const float cosine = std::cos(rotation), sine = std::sin(rotation);
-    const float rows[12] = {cosine, -sine, 0, 0, sine, cosine, 0, 0, 0, 0, 1, 0};
+    float turn[9] = {};
+    const int given = world.read("rotation", turn, 1, 9);
+    if (given > 1 && given < 9) throw Error(world.where() + ": 'rotation' has neither 1 nor 9 numbers");
+    float rows[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+    if (given == 9) {
+        for (int r = 0; r < 3; ++r) std::copy_n(turn + 3 * r, 3, rows + 4 * r);
+    } else {
+        rows[0] = rows[5] = std::cos(turn[0]);
+        rows[4] = std::sin(turn[0]);
+        rows[1] = -rows[4];
+    }
     desc.world_from_texture = rows;
     world.warn_unknown(warnings);
     check(trp_scene_set_world(scene, &desc), world.where());

@@ -75,23 +75,20 @@ bool run_tiles(RenderJob& job, const RenderEvents& events, const std::function<v
                 for (uint32_t pass = 0; pass < passes && !cancelled; ++pass) {
                     std::atomic<size_t> next{0};
                     const unsigned workers = thread_count(job.settings.threads);
-                    tbb::parallel_for(
-                        0u, workers,
-                        [&](unsigned) {
-                            const FlushDenormals flush;
-                            for (size_t t; !cancelled && (t = next++) < tiles.size();) {
-                                Tile tile = tiles[t];
-                                tile.work.first_sample = pass * kPassSamples;
-                                tile.work.end_sample = std::min(samples, (pass + 1) * kPassSamples);
-                                tile.window.pass = pass;
-                                work(tile.work);
-                                if (cancelled) break;
-                                const std::lock_guard lock(mailbox.mutex);
-                                mailbox.finished.push_back(tile.window);
-                                mailbox.news.notify_one();
-                            }
-                        },
-                        tbb::simple_partitioner());
+                    parallel_workers(workers, [&] {
+                        const FlushDenormals flush;
+                        for (size_t t; !cancelled && (t = next++) < tiles.size();) {
+                            Tile tile = tiles[t];
+                            tile.work.first_sample = pass * kPassSamples;
+                            tile.work.end_sample = std::min(samples, (pass + 1) * kPassSamples);
+                            tile.window.pass = pass;
+                            work(tile.work);
+                            if (cancelled) break;
+                            const std::lock_guard lock(mailbox.mutex);
+                            mailbox.finished.push_back(tile.window);
+                            mailbox.news.notify_one();
+                        }
+                    });
                     std::unique_lock lock(mailbox.mutex);
                     mailbox.news.wait(lock, [&] { return mailbox.finished.empty() || cancelled; });
                 }

@@ -117,6 +117,12 @@ World describe(const TrpWorldDesc& desc) {
     world.texture = desc.texture;
     world.radiance = {desc.radiance[0], desc.radiance[1], desc.radiance[2]};
     world.world_from_texture = describe_transforms(desc.world_from_texture, 1, "world")[0];
+    for (int a = 0; a < 3; ++a)
+        for (int b = 0; b <= a; ++b) {
+            const float product = world.world_from_texture.column(a).dot(world.world_from_texture.column(b));
+            if (std::abs(product - (a == b ? 1.0f : 0.0f)) > 1e-3f)
+                fail(TRP_ERROR_ARGUMENT, "world: world_from_texture is not a rotation");
+        }
     world.visible_camera = desc.visible_camera;
     world.light = desc.light;
     return world;

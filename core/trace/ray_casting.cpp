@@ -153,6 +153,7 @@ void Caster::add_seen_lights(Workspace& w) const {
         if (!any) continue;
         for (int c = 0; c < 3; ++c) rgba[c][i] += w.throughput[i] * nearest.radiance[c];
         rgba[3][i] += w.throughput[i];
+        w.sums.add(kShadow, i, Vec3(1, 1, 1) * w.throughput[i]);
         w.active[i] = 0;
         w.points.slot[i] = kNoSlot;
     }

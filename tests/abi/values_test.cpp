@@ -166,6 +166,13 @@ TEST(Values, World) {
         d.world_from_texture = rows.data();
         EXPECT_TRUE(fails(trp_scene_set_world(scene, &d), TRP_ERROR_ARGUMENT, {"world", "nan"}));
     }
+    {
+        Transform rows = kIdentity;
+        rows[0] = 2;
+        TrpWorldDesc d = world;
+        d.world_from_texture = rows.data();
+        EXPECT_TRUE(fails(trp_scene_set_world(scene, &d), TRP_ERROR_ARGUMENT, {"world", "not a rotation"}));
+    }
     world.struct_size = 4;
     EXPECT_TRUE(fails(trp_scene_set_world(scene, &world), TRP_ERROR_ARGUMENT, {"struct_size is 4"}));
     world.struct_size = sizeof world - 8;

@@ -238,6 +238,16 @@ TEST(Scene, WorldFilmAndSettings) {
     EXPECT_FALSE(loaded.scene.needs_light);
 }
 
+TEST(Scene, WorldTurnedAboutAnyAxis) {
+    SquareScene builder;
+    json& world = builder.root["scenes"][0]["extras"]["triptych"]["world"];
+    world = {{"rotation", {1, 0, 0, 0, 0, -1, 0, 1, 0}}};  // a quarter about X
+    const Loaded loaded = load(builder);
+    expect_point(image_of(loaded->world_rows, 0, 1, 0), 0, 0, 1);
+    world = {{"rotation", {1, 0, 0}}};
+    EXPECT_CONTAINS(error_of(builder), "'rotation' has neither 1 nor 9 numbers");
+}
+
 // All corners of the box must be in the picture, and some near its edge.
 TEST(Scene, FramingAndHeadlight) {
     for (const auto& [width, height] : {std::pair<uint32_t, uint32_t>{960, 540}, {200, 400}}) {

@@ -209,10 +209,13 @@ TEST(Lights, AreaLightIsSeenWhereItIsToBe) {
                 d.width = 4;
             });
             const Settings plain = {{"samples", "1"}, {"film.filter_width", "0"}};
-            const Image below = render(scene, 40, 40, plain);
+            scene.commit();
+            Render from_below(scene, 40, 40, plain, {"Shadow"});
+            const Image below = from_below.run().read(), shadow = from_below.read("Shadow");
             const uint32_t light_x = below.at(25, 20)[0] == 7 ? 14 : 25, veil_x = 39 - light_x;
             EXPECT_FLOAT_EQ(below.at(light_x, 20)[1], visible ? 2 : 0);
             EXPECT_FLOAT_EQ(below.at(light_x, 20)[3], 1);
+            EXPECT_FLOAT_EQ(shadow.at(light_x, 20)[0], 1) << "no surface is seen there";
             EXPECT_FLOAT_EQ(below.at(veil_x, 20)[1], 7);
             const uint32_t corner = light_x > 20 ? 29 : 10;
             EXPECT_FLOAT_EQ(below.at(corner, 29)[1], visible && shape == TRP_SHAPE_RECTANGLE ? 2 : 0);
