@@ -6,8 +6,9 @@ The modules, in the order in which data walks through them:
     data        plain descriptions of what the core takes; no bpy, no ctypes
     compat      what differs between Blender's versions
     export_*    Blender's scene to data
-    core        data to the shared library (the only ctypes)
-    gltf        data to a .glb file, without the library
+    abi         the shared library's C interface in ctypes
+    core        data to the shared library; with abi, the only ctypes
+    gltf, gltf_mesh, glb        data to a .glb file, without the library
     engine, properties, panels      Blender's side: what is registered
 """
 

@@ -28,9 +28,9 @@ class Layer:
 class Triangulation:
     """What only other readers of a glTF file need: Blender's own triangles and shading normals."""
 
-    corners: np.ndarray  # triangles × 3, uint32: indices of corners
+    corners: np.ndarray  # triangles × 3, uint32: indices of corners; 0, 1, 2, … in a mesh of triangles
     faces: np.ndarray  # the face of each triangle
-    normals: np.ndarray  # corners × 3
+    normals: np.ndarray  # corners × 3: the mesh's own, where it has them
 
 
 @dataclass

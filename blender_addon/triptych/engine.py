@@ -7,7 +7,7 @@ import time
 import bpy
 import numpy as np
 
-from . import compat, core, data, properties, settings
+from . import abi, compat, core, data, properties, settings
 from .export_scene import export_scene, film_size
 
 _DISPLAY_SECONDS = 0.2  # between updates of the picture while it renders
@@ -37,7 +37,7 @@ class TriptychEngine(bpy.types.RenderEngine):
         job = _Job(self, depsgraph)
         try:
             message = job.run()
-        except (core.LibraryMissing, core.Error, data.ExportError) as error:
+        except (abi.LibraryMissing, abi.Error, data.ExportError) as error:
             message = str(error)
         except Exception as error:
             import traceback

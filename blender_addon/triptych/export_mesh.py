@@ -32,7 +32,10 @@ def export_mesh(mesh, triangulate=False):
         result.colors = _colors(mesh)
         if triangulate:
             corners, faces = compat.mesh_triangles(mesh)
-            result.triangulation = data.Triangulation(corners, faces, compat.mesh_corner_normals(mesh, always=True))
+            normals = result.corner_normals
+            if normals is None:
+                normals = compat.mesh_corner_normals(mesh, always=True)
+            result.triangulation = data.Triangulation(corners, faces, normals)
     return result
 
 

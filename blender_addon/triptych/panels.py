@@ -3,7 +3,7 @@
 
 import bpy
 
-from . import core, properties, settings
+from . import abi, properties, settings
 
 ENGINE = "TRIPTYCH"
 
@@ -71,7 +71,7 @@ class _Panel:
 
 def _warn_missing(layout):
     """Says where the library was looked for; gives whether it is missing."""
-    message = core.missing()
+    message = abi.missing()
     if not message and properties.SETTINGS:
         return False
     box = layout.box().column(align=True)

@@ -15,7 +15,7 @@ from bpy.props import (
     PointerProperty,
 )
 
-from . import core, settings
+from . import abi, core, settings
 
 METHODS = (
     *("wireframe", "hidden_line", "visible_surface", "flat", "gouraud", "phong", "ray_casting", "ray_tracing"),
@@ -129,7 +129,7 @@ def _scene_group():
     PASSES.clear()
     settings.PROPERTIES.clear()
     methods = []
-    if not core.missing():
+    if not abi.missing():
         methods = core.methods()
         SETTINGS.extend(core.settings())
         PASSES.extend(core.passes())

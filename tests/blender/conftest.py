@@ -16,9 +16,9 @@ os.environ.setdefault("TRIPTYCH_LIBRARY", str(ROOT / "build/lib/libtriptych.so")
 
 
 def pytest_collection_modifyitems(items):
-    from triptych import core
+    from triptych import abi
 
-    why = core.missing()
+    why = abi.missing()
     for item in items:
         if why and item.get_closest_marker("library"):
             item.add_marker(pytest.mark.skip(reason=why))

@@ -2,9 +2,11 @@
 """Reads back what gltf.py writes, and checks what the glTF specification asks of every file."""
 
 import json
+import os
 import struct
 
 import numpy as np
+from triptych import gltf
 
 _TYPES = {5126: "<f4", 5121: "<u1", 5123: "<u2", 5125: "<u4"}
 _WIDTH = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
@@ -77,3 +79,11 @@ class Glb:
     @staticmethod
     def extras(item):
         return item.get("extras", {}).get("triptych", {})
+
+
+def written(scene, tmp_path):
+    """The Glb of a bpy.types.Scene, the only file in that folder."""
+    path = tmp_path / "scene.glb"
+    gltf.write(str(path), scene)
+    assert os.listdir(tmp_path) == ["scene.glb"]
+    return Glb(path)

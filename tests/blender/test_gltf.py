@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The glTF writer: what stands in the file is what was exported. Needs no library."""
 
-import os
 from math import radians
 
 import bpy
@@ -9,68 +8,10 @@ import exr
 import numpy as np
 import pytest
 import stage
-from glb import Glb
+from glb import Glb, written
 from triptych import gltf
 from triptych.as_rendered import export_as_rendered
 from triptych.export_texture import exr_bytes, png_bytes
-
-
-def written(scene, tmp_path):
-    path = tmp_path / "scene.glb"
-    gltf.write(str(path), scene)
-    assert os.listdir(tmp_path) == ["scene.glb"]
-    return Glb(path)
-
-
-def z_up(vectors):
-    return np.stack([vectors[:, 0], -vectors[:, 2], vectors[:, 1]], axis=1)
-
-
-def test_mesh_arrays_survive(scene, tmp_path):
-    bpy.ops.mesh.primitive_cylinder_add(vertices=7)
-    cylinder = bpy.context.object
-    for k, face in enumerate(cylinder.data.polygons):
-        face.use_smooth = k % 2 == 0
-        face.material_index = k % 2
-    stage.material(cylinder, name="A")
-    stage.material(cylinder, name="B")
-    cylinder.data.color_attributes.new("Paint", "FLOAT_COLOR", "POINT").data[3].color = (0.1, 0.2, 0.3, 0.4)
-    stage.camera(scene)
-    mesh = export_as_rendered(scene).meshes[0]
-    glb = written(scene, tmp_path)
-    extras = glb.extras(glb.json["meshes"][0])
-    assert np.array_equal(z_up(glb.array(extras["positions"])), mesh.positions)
-    for name in ("face_offsets", "corner_vertices", "face_materials", "face_smooth"):
-        assert np.array_equal(glb.array(extras[name]), getattr(mesh, name)), name
-    assert np.array_equal(glb.array(extras["edges"]).reshape(-1, 2), mesh.edges)
-    assert ("corner_normals" in extras) == (mesh.corner_normals is not None)
-    if mesh.corner_normals is not None:
-        assert np.array_equal(z_up(glb.array(extras["corner_normals"])), mesh.corner_normals)
-    assert np.array_equal(glb.array(extras["uv_sets"][0]["accessor"]), mesh.uv_sets[0].values)
-    assert extras["colors"][0]["domain"] == "vertex"
-    assert np.array_equal(glb.array(extras["colors"][0]["accessor"]), mesh.colors[0].values)
-    assert extras["materials"] == [0, 1] and len(glb.json["meshes"][0]["primitives"]) == 2
-
-
-def test_triangles_have_the_area_and_side_of_the_faces(scene, tmp_path):
-    """A concave face: its triangles cover it once, and turn the way its normal points."""
-    arrow = [(0, 0, 0), (2, 1, 0), (0, 2, 0), (0.8, 1, 0)]
-    stage.mesh(scene, "Arrow", arrow, [(0, 1, 2, 3)])
-    stage.camera(scene)
-    glb = written(scene, tmp_path)
-    primitive = glb.json["meshes"][0]["primitives"][0]
-    places = z_up(glb.array(primitive["attributes"]["POSITION"]))
-    a, b, c = places[glb.array(primitive["indices"]).reshape(-1, 3)].transpose(1, 0, 2)
-    doubled = np.cross(b - a, c - a)
-    assert (doubled[:, 2] > 0).all() and doubled[:, 2].sum() / 2 == pytest.approx(2 - 0.8)
-
-
-def test_loose_edges_are_lines(scene, tmp_path):
-    stage.mesh(scene, "Wire", [(0, 0, 0), (0, 0, 1)], [], edges=[(0, 1)])
-    stage.camera(scene)
-    glb = written(scene, tmp_path)
-    assert glb.json["meshes"][0]["primitives"][0]["mode"] == 1
-    assert "corner_vertices" not in glb.extras(glb.json["meshes"][0])
 
 
 def test_transforms(scene, tmp_path):

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A scene gives the same picture through the engine and through .glb and the command: nothing is lost."""
 
+import json
 import subprocess
 
 import bpy
@@ -86,6 +87,36 @@ def test_meshes(scene, cli, tmp_path):
     same(scene, cli, tmp_path)
 
 
+@pytest.mark.parametrize("kind", ["flat", "smooth", "own normals", "slots", "seams"])
+def test_triangles(scene, cli, tmp_path, kind):
+    """Nothing but triangles, most of which glTF can say: bright highlights are the same, and no vertex is split."""
+    corners = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
+    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    cube = stage.mesh(scene, "Cube", corners, [(face[0], *face[k : k + 2]) for face in faces for k in (1, 2)])
+    _, tree, node = stage.material(cube, "ShaderNodeBsdfGlossy", name="Shiny", Color=(0.9, 0.7, 0.3), Roughness=0.1)
+    stage.material(cube, name="Dull", Color=(0.2, 0.6, 0.3))
+    for k, face in enumerate(cube.data.polygons):
+        face.use_smooth = kind != "flat"
+        face.material_index = k % 2 if kind == "slots" else 0
+    if kind == "own normals":
+        if hasattr(cube.data, "use_auto_smooth"):
+            cube.data.use_auto_smooth = True
+        cube.data.normals_split_custom_set_from_vertices([(x, y, z + 0.3) for x, y, z in corners])
+    elif kind == "seams":
+        cube.data.uv_layers.new()  # each face has the same corner of the picture
+        image = tree.nodes.new("ShaderNodeTexImage")
+        image.image = checker()
+        tree.links.new(image.outputs[0], node.inputs["Color"])
+    again = stage.link(scene, "Again", cube.data, (1.5, 1.5, -0.5), rotation=(0, 30, 20))
+    again.material_slots[0].link, again.material_slots[0].material = "OBJECT", bpy.data.materials["Dull"]
+    stage.light(scene, "POINT", (3, -3, 6), 2000)
+    stage.camera(scene, (4, -5, 4), lens=100)
+    same(scene, cli, tmp_path)
+    command = [cli, "info", "--json", str(tmp_path / "scene.glb")]
+    told = json.loads(subprocess.run(command, check=True, timeout=300, capture_output=True).stdout)
+    assert (told["instances"], told["faces"], told["vertices"]) == (2, 2 * 12, 2 * 8)
+
+
 def test_materials(scene, cli, tmp_path):
     """Textures, a normal map, vertex colours, object colours, mixes, alpha, slots."""
     board, bumps = checker(), normals()
@@ -166,6 +197,19 @@ def test_lights(scene, cli, tmp_path, kind):
             tree.links.new(mapping.outputs[0], image.inputs["Vector"])
             tree.links.new(image.outputs[0], background.inputs["Color"])
     view(scene)
+    same(scene, cli, tmp_path)
+
+
+@pytest.mark.parametrize("turn", [(0, 0, 0.5), (0.4, -0.7, 1.1)], ids=["z", "any"])
+def test_world_picture(scene, cli, tmp_path, turn):
+    tree, background = stage.world_color(scene, (1, 1, 1))
+    image, mapping = tree.nodes.new("ShaderNodeTexEnvironment"), tree.nodes.new("ShaderNodeMapping")
+    image.image = checker("Sky")
+    mapping.inputs["Rotation"].default_value = turn
+    tree.links.new(mapping.outputs[0], image.inputs["Vector"])
+    tree.links.new(image.outputs[0], background.inputs["Color"])
+    ground(scene)
+    stage.camera(scene, (3, -3, 2), (0, 0, 1.5))
     same(scene, cli, tmp_path)
 
 

@@ -4,7 +4,7 @@
 import bpy
 import pytest
 import stage
-from triptych import core, panels, properties, settings
+from triptych import abi, core, panels, properties, settings
 
 
 def test_registers_twice(addon):
@@ -30,10 +30,10 @@ def test_unregister_leaves_nothing(addon):
 def test_without_library(addon, scene, monkeypatch, capfd):
     """The engine registers, says what is missing, and a render ends with that message and a black picture."""
     monkeypatch.setenv("TRIPTYCH_LIBRARY", "/nowhere/libtriptych.so")
-    monkeypatch.setattr(core, "_library", None)
+    monkeypatch.setattr(abi, "_library", None)
     addon.register()
     try:
-        assert "/nowhere/libtriptych.so" in core.missing()
+        assert "/nowhere/libtriptych.so" in abi.missing()
         assert set(properties.METHODS) == {
             item.identifier for item in scene.triptych.bl_rna.properties["method"].enum_items
         }
@@ -52,8 +52,8 @@ def test_not_a_library(monkeypatch, tmp_path):
     path = tmp_path / "libtriptych.so"
     path.write_text("no library")
     monkeypatch.setenv("TRIPTYCH_LIBRARY", str(path))
-    monkeypatch.setattr(core, "_library", None)
-    assert "cannot be loaded" in core.missing()
+    monkeypatch.setattr(abi, "_library", None)
+    assert "cannot be loaded" in abi.missing()
 
 
 def test_blender_panels_are_open(addon):
