@@ -81,7 +81,7 @@ class OiioModule final : public ImageModule {
     }
 
   private:
-    static void write(const std::string& path, const char* format, const Picture& picture, OIIO::TypeDesc type) {
+    static void write(const std::string& path, const char* format, const Picture& picture, const OIIO::TypeDesc& type) {
         const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(format);
         if (!output) fail(OIIO::geterror());
         const auto channels = static_cast<int>(picture.channels.size());

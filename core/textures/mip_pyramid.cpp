@@ -75,7 +75,7 @@ std::vector<Cover> covers(uint32_t size, uint32_t next) {
 }
 
 uint16_t stored(float value, uint16_t) {
-    return static_cast<uint16_t>(value + 0.5f);
+    return static_cast<uint16_t>(std::lrintf(value));
 }
 float stored(float value, float) {
     return value;
