@@ -45,6 +45,7 @@ class PassList {
 class BlockSums {
   public:
     explicit BlockSums(const PassList& passes);
+    const PassList& passes() const { return passes_; }
     void clear();
     // The lanes of a channel; null where the pass was not asked for.
     float* channel(PassId pass, int c) {

@@ -24,16 +24,17 @@ const SettingRow kSettings[] = {
     {TRP_TYPE_INT, "threads", "Threads", "Threads that work; 0 uses every core", "", "0", 0, 1024, nullptr, "*",
      [](Settings& s, const double* v) { s.threads = static_cast<uint32_t>(*v); }},
     {TRP_TYPE_BOOL, "shadows", "Shadows", "Lights are blocked by what stands in their way", "", "on", 0, 1, nullptr,
-     "*", [](Settings& s, const double* v) { s.shadows = *v != 0; }},
+     "*", [](Settings& s, const double* v) { s.illumination.shadows = *v != 0; }},
     {TRP_TYPE_ENUM, "shading.specular", "Specular",
      "The highlight of lights (not of the world): none, Phong's (V·R)^n, or Blinn's (N·H)^n, which is about twice as "
      "wide for the same n",
-     "", "phong", 0, 0, kSpeculars, "*", [](Settings& s, const double* v) { s.specular = static_cast<Specular>(*v); }},
+     "", "phong", 0, 0, kSpeculars, "*",
+     [](Settings& s, const double* v) { s.illumination.specular = static_cast<Specular>(*v); }},
     {TRP_TYPE_COLOR, "shading.ambient", "Ambient light",
      "I_A, which reaches every surface from everywhere; the world's own light is sampled and needs none", "W/(m² sr)",
      "0,0,0", 0, 1e6, nullptr, "*",
      [](Settings& s, const double* v) {
-         s.ambient = Vec3(static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]));
+         s.illumination.ambient = Vec3(static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]));
      }},
     {TRP_TYPE_ENUM, "shading.normals", "Normals",
      "The mesh's own normals, or averages of the faces around each position", "", "mesh", 0, 0, kNormals, "*",
@@ -44,7 +45,7 @@ const SettingRow kSettings[] = {
      "", "light", 0, 0, kFalloffs, "*",
      [](Settings& s, const double* v) {
          constexpr int32_t kOf[] = {-1, TRP_FALLOFF_CONSTANT, TRP_FALLOFF_LINEAR, TRP_FALLOFF_PHYSICAL};
-         s.falloff = kOf[static_cast<int>(*v)];
+         s.illumination.falloff = kOf[static_cast<int>(*v)];
      }},
     {TRP_TYPE_ENUM, "film.filter", "Pixel filter", "How samples are weighed around a pixel", "", "blackman_harris", 0,
      0, kFilters, "*", [](Settings& s, const double* v) { s.filter = static_cast<PixelFilter::Kind>(*v); }},

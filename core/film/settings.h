@@ -4,7 +4,7 @@
 #include <string>
 
 #include "film/pixel_filter.h"
-#include "shading/equation.h"
+#include "shading/lighting.h"
 
 namespace trp {
 
@@ -12,11 +12,8 @@ struct Settings {
     uint32_t samples = 16;
     uint32_t seed = 0;
     uint32_t threads = 0;
-    bool shadows = true;
-    Specular specular = Specular::phong;
-    Vec3 ambient{0, 0, 0};
+    Illumination illumination;
     NormalChoice normals = NormalChoice::mesh;
-    int32_t falloff = -1;  // TRP_FALLOFF_… for all lights; −1: each light's own
     PixelFilter::Kind filter = PixelFilter::Kind::blackman_harris;
     float filter_width = 1.5f;
     bool transparent = false;

@@ -32,6 +32,7 @@ struct Points {
     alignas(64) uint32_t triangle[kBatch];  // of the surface
     alignas(64) Lanes b1, b2;               // barycentric weights of the triangle's second and third vertex
     alignas(64) Lanes time;                 // 0 to 1 over the time samples
+    alignas(64) Lanes depth;                // along the camera's axis; for passes and footprints
     LaneVec3 to_viewer;                     // unit
     // Written by locate().
     LaneVec3 position;                      // world space, relative to the snapshot's origin

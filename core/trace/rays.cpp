@@ -9,43 +9,11 @@
 #define HWY_TARGET_INCLUDE "trace/rays.cpp"
 #include "hwy/foreach_target.h"
 
-#include "base/sobol-inl.h"
+#include "film/pixel_random-inl.h"
 #include "shading/equation-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace trp::HWY_NAMESPACE {
-
-// The pixel of each lane: its offsets within a packet repeat every 16 lanes.
-template <class D, class VU = hn::Vec<hn::RebindToUnsigned<D>>>
-void pixel_of(D, uint32_t block_x, uint32_t block_y, int i, VU& x, VU& y) {
-    const hn::RebindToUnsigned<D> du;
-    const VU lane = hn::Iota(du, static_cast<uint32_t>(i));
-    const VU three = hn::Set(du, 3u);
-    x = hn::Add(hn::Add(hn::ShiftLeft<2>(hn::And(hn::ShiftRight<4>(lane), three)), hn::And(lane, three)),
-                hn::Set(du, block_x * kBlockSide));
-    y = hn::Add(hn::Add(hn::ShiftLeft<2>(hn::ShiftRight<6>(lane)), hn::And(hn::ShiftRight<2>(lane), three)),
-                hn::Set(du, block_y * kBlockSide));
-}
-
-template <class D, class VU>
-VU pixel_key(D, VU x, VU y, uint32_t seed) {
-    const hn::RebindToUnsigned<D> du;
-    return mix_bits(du, hn::Add(x, mix_bits(du, hn::Add(y, mix_bits(du, hn::Set(du, seed + 1u))))));
-}
-
-void random_pair_lanes(uint32_t block_x, uint32_t block_y, uint32_t seed, uint32_t sample, uint32_t pair, float* u,
-                       float* v) {
-    const hn::ScalableTag<float> d;
-    const hn::RebindToUnsigned<decltype(d)> du;
-    for (int i = 0; i < kBatch; i += static_cast<int>(hn::Lanes(d))) {
-        auto x = hn::Zero(du), y = hn::Zero(du);
-        pixel_of(d, block_x, block_y, i, x, y);
-        auto a = hn::Zero(d), b = hn::Zero(d);
-        sobol_pair(d, pixel_key(d, x, y, seed), sample, pair, a, b);
-        hn::Store(a, d, u + i);
-        hn::Store(b, d, v + i);
-    }
-}
 
 // The filter's offset for u in [0, 1).
 template <class D, class V>
@@ -154,41 +122,10 @@ void read_hit_lanes(const BlockRays& rays, const uint8_t* active, Points& points
         hn::Store(hn::Load(d, hit.u + k), d, points.b1 + i);
         hn::Store(hn::Load(d, hit.v + k), d, points.b2 + i);
         hn::Store(zero, d, points.time + i);
+        hn::Store(hn::Load(d, rays.packets[i >> 4].ray.tfar + k), d, points.depth + i);
         const auto direction = load3(d, rays.direction, i);
         const auto scale = hn::Div(hn::Set(d, -1.0f), hn::Sqrt(dot3(direction, direction)));
         store3(d, direction * scale, points.to_viewer, i);
-    }
-}
-
-void make_footprint_lanes(const RayMaker& maker, const BlockRays& rays, Points& points) {
-    const hn::CappedTag<float, 16> d;
-    using V = hn::Vec<decltype(d)>;
-    const View& view = maker.view;
-    const V one = hn::Set(d, 1.0f), tiny = hn::Set(d, 1e-37f);
-    for (int i = 0; i < kBatch; i += static_cast<int>(hn::Lanes(d))) {
-        // Gradients of b1 and b2 in the plane of the triangle, its edges scaled to 1 against underflow.
-        Vector3<V> e1 = load3(d, points.edge1, i), e2 = load3(d, points.edge2, i);
-        const V scale = hn::Div(one, hn::Max(hn::Max(greatest_component(e1), greatest_component(e2)), tiny));
-        e1 = e1 * scale, e2 = e2 * scale;
-        const Vector3<V> normal = cross3(e1, e2);
-        const V n2 = dot3(normal, normal);
-        const V inverse = hn::IfThenElseZero(hn::Gt(n2, hn::Zero(d)), hn::Div(scale, hn::Max(n2, tiny)));
-        const Vector3<V> gradient1 = cross3(e2, normal) * inverse, gradient2 = cross3(normal, e1) * inverse;
-
-        const Vector3<V> n = load3(d, points.geometric_normal, i), direction = load3(d, rays.direction, i);
-        const V slope = dot3(n, direction);
-        const auto steep = hn::Gt(hn::Abs(slope), hn::Set(d, 1e-8f));
-        const V along = hn::IfThenElseZero(steep, hn::Div(one, slope));
-        const V depth = view.perspective ? hn::Load(d, rays.packets[i >> 4].ray.tfar + (i & 15)) : one;
-        auto footprint = [&](const Vec3& step, float* b1, float* b2) {
-            // The neighbour's ray moves by `across` at this depth, and on along its direction to the plane again.
-            const Vector3<V> across = broadcast(d, step * maker.footprint) * depth;
-            const Vector3<V> moved = across - direction * hn::Mul(dot3(n, across), along);
-            hn::Store(dot3(gradient1, moved), d, b1 + i);
-            hn::Store(dot3(gradient2, moved), d, b2 + i);
-        };
-        footprint(view.x * view.step_x, points.b1_dx, points.b2_dx);
-        footprint(view.y * view.step_y, points.b1_dy, points.b2_dy);
     }
 }
 
@@ -197,15 +134,8 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace trp {
-HWY_EXPORT(random_pair_lanes);
 HWY_EXPORT(make_rays);
 HWY_EXPORT(read_hit_lanes);
-HWY_EXPORT(make_footprint_lanes);
-
-void random_pair(uint32_t block_x, uint32_t block_y, uint32_t seed, uint32_t sample, uint32_t pair, float* u,
-                 float* v) {
-    HWY_DYNAMIC_DISPATCH(random_pair_lanes)(block_x, block_y, seed, sample, pair, u, v);
-}
 
 void make_primary_rays(const RayMaker& maker, uint32_t block_x, uint32_t block_y, uint32_t sample, BlockRays& rays) {
     HWY_DYNAMIC_DISPATCH(make_rays)(maker, block_x, block_y, sample, rays);
@@ -237,10 +167,6 @@ void trace_primary(RTCScene scene, const uint8_t* active, Coherence coherence, B
 
 void read_hits(const BlockRays& rays, const uint8_t* active, Points& points) {
     HWY_DYNAMIC_DISPATCH(read_hit_lanes)(rays, active, points);
-}
-
-void make_footprints(const RayMaker& maker, const BlockRays& rays, Points& points) {
-    HWY_DYNAMIC_DISPATCH(make_footprint_lanes)(maker, rays, points);
 }
 
 }  // namespace trp

@@ -25,10 +25,6 @@ struct RayMaker {
     float footprint = 1;  // of a pixel: what one of many samples stands for
 };
 
-// Numbers of the random sequence for the block's pixels: pair 0 places the sample in its pixel, 1 on the lens; 4 and up
-// belong to the lights.
-void random_pair(uint32_t block_x, uint32_t block_y, uint32_t seed, uint32_t sample, uint32_t pair, float* u, float* v);
-
 // What all rays of a block have in common, once: they meet what `mask` names.
 void prepare(BlockRays& rays, unsigned mask);
 
@@ -37,16 +33,8 @@ void make_primary_rays(const RayMaker& maker, uint32_t block_x, uint32_t block_y
 // Traces all packets for the lanes where `active` is 1.
 void trace_primary(RTCScene scene, const uint8_t* active, Coherence coherence, BlockRays& rays);
 
-// Slot, triangle, barycentrics and the direction to the viewer; kNoSlot where nothing was hit or the lane is not
+// Slot, triangle, barycentrics, depth and the direction to the viewer; kNoSlot where nothing was hit or the lane is not
 // active.
 void read_hits(const BlockRays& rays, const uint8_t* active, Points& points);
-
-// The footprint of a pixel at each point that locate() has found (Igehy, "Tracing Ray Differentials", 1999, eq. 10-12).
-void make_footprints(const RayMaker& maker, const BlockRays& rays, Points& points);
-
-// Ray parameters: depth along the camera's axis.
-inline float hit_depth(const BlockRays& rays, int lane) {
-    return rays.packets[lane >> 4].ray.tfar[lane & 15];
-}
 
 }  // namespace trp

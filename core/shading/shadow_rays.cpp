@@ -1,9 +1,9 @@
-#include "trace/shadow_rays.h"
+#include "shading/shadow_rays.h"
 
 #include <algorithm>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "trace/shadow_rays.cpp"
+#define HWY_TARGET_INCLUDE "shading/shadow_rays.cpp"
 #include "hwy/foreach_target.h"
 
 #include "shading/equation-inl.h"

@@ -1,0 +1,33 @@
+#include "shading/lighting.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace trp {
+
+void add_lights(const Snapshot& snapshot, const Illumination& illumination, Coherence coherence,
+                const RandomPairs& random, const Points& points, const Coefficients& coefficients, LaneVec3& radiance,
+                ArrivingLight* arriving, LightScratch& scratch, ProgramScratch& program, ShadowCounts& counts) {
+    using Clock = std::chrono::steady_clock;
+    for (size_t l = 0; l < snapshot.lights.size(); ++l) {
+        const ReadyLight& light = snapshot.lights[l];
+        const bool is_world = light.kind == ReadyLight::Kind::world || light.kind == ReadyLight::Kind::world_map;
+        if (light.is_sampled()) random(kFirstLightPair + static_cast<uint32_t>(l), scratch.u, scratch.v);
+        sample_light(snapshot, light, illumination.falloff, points, scratch.u, scratch.v, scratch.samples, program);
+        if (illumination.shadows && light.cast_shadow) {
+            const auto before = Clock::now();
+            counts.rays +=
+                trace_shadows(snapshot, points, scratch.samples, is_world ? Coherence::incoherent : coherence,
+                              scratch.visibility, scratch.shadow, program);
+            counts.nanoseconds += static_cast<uint64_t>(
+                std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - before).count());
+        } else {
+            std::fill_n(scratch.visibility, kBatch, 1.0f);
+        }
+        // The highlight stands for lights that have a place; the world shows in mirrors.
+        add_light(is_world ? Specular::none : illumination.specular, points, coefficients, scratch.samples,
+                  scratch.visibility, radiance, arriving);
+    }
+}
+
+}  // namespace trp

@@ -1,0 +1,38 @@
+// The whole equation at a batch, as every method evaluates it: where, and with which terms, is the method's.
+#pragma once
+
+#include <functional>
+
+#include "shading/shadow_rays.h"
+
+namespace trp {
+
+// The terms of the equation that settings choose.
+struct Illumination {
+    Specular specular = Specular::phong;
+    int32_t falloff = -1;  // TRP_FALLOFF_… for all lights; −1: each light's own
+    bool shadows = true;
+    Vec3 ambient{0, 0, 0};  // I_A
+};
+
+// Gives numbers in [0, 1) of the batch's random sequence by their pair: u, v[kBatch].
+using RandomPairs = std::function<void(uint32_t pair, float* u, float* v)>;
+inline constexpr uint32_t kFirstLightPair = 4;  // a pair to each light; those before are the camera's
+
+// One to a thread.
+struct LightScratch {
+    LightSamples samples;
+    alignas(64) Lanes u, v, visibility;
+    ShadowScratch shadow;
+};
+
+struct ShadowCounts {
+    uint64_t rays = 0, nanoseconds = 0;
+};
+
+// radiance += the terms of all lights, each sampled once. `coherence`: of the batch's lanes, for shadow rays.
+void add_lights(const Snapshot& snapshot, const Illumination& illumination, Coherence coherence,
+                const RandomPairs& random, const Points& points, const Coefficients& coefficients, LaneVec3& radiance,
+                ArrivingLight* arriving, LightScratch& scratch, ProgramScratch& program, ShadowCounts& counts);
+
+}  // namespace trp
