@@ -235,6 +235,7 @@ class SettingInfo(c.Structure):
         ("maximum", f64),
         ("choices", c.POINTER(text)),
         ("methods", text),
+        ("method_defaults", text),
     ]
 
 

@@ -42,7 +42,8 @@ def methods():
 
 class Setting:
     """A row of the settings' table: name, type (of abi.SETTING_TYPES), label, description, unit, default (text),
-    minimum, maximum, choices, methods (a set of names; {"*"}: all)."""
+    minimum, maximum, choices, methods (a set of names; {"*"}: all), method_defaults ({method: text} where it is not
+    the default)."""
 
     def __init__(self, row):
         self.type = abi.SETTING_TYPES[row.type]
@@ -51,12 +52,16 @@ class Setting:
         self.default = _words(row.default_value)
         self.minimum, self.maximum = row.minimum, row.maximum
         self.methods = set(_words(row.methods).split())
+        self.method_defaults = dict(word.split("=", 1) for word in _words(row.method_defaults).split())
         self.choices = []
         while row.choices and row.choices[len(self.choices)]:
             self.choices.append(_words(row.choices[len(self.choices)]))
 
     def used_by(self, method):
         return method in self.methods or "*" in self.methods
+
+    def default_for(self, method):
+        return self.method_defaults.get(method, self.default)
 
 
 def settings():

@@ -72,7 +72,19 @@ def wanted_passes(view_layer, method):
 
 
 def _bool(setting, common):
-    return BoolProperty(default=setting.default in {"on", "true", "1"}, **common)
+    if not setting.method_defaults:
+        return BoolProperty(default=setting.default == "on", **common)
+    # Shown as the method has it until it is set.
+    choice = settings.choice_name(setting.name)
+
+    def get(group):
+        stored = getattr(group, choice)
+        return (setting.default_for(group.method) if stored == settings.UNSET else stored) == "on"
+
+    def set(group, value):
+        setattr(group, choice, "on" if value else "off")
+
+    return BoolProperty(get=get, set=set, **common)
 
 
 def _int(setting, common):
@@ -119,7 +131,7 @@ def _method_property(methods):
         name="Method",
         description="How the picture is made",
         items=[(name, label, description.rstrip(".")) for name, label, description in methods],
-        default=DEFAULT_METHOD if DEFAULT_METHOD in names else names[0],
+        default=DEFAULT_METHOD if DEFAULT_METHOD in names else names[-1],
     )
 
 
@@ -137,6 +149,9 @@ def _scene_group():
     for setting in SETTINGS:
         name = settings.property_name(setting.name)
         annotations[name] = _setting_property(setting)
+        if setting.method_defaults:
+            items = [(value, value, "") for value in (settings.UNSET, "on", "off")]
+            annotations[settings.choice_name(setting.name)] = EnumProperty(items=items, options={"HIDDEN"})
         settings.PROPERTIES[setting.name] = name
     return type("TriptychSceneSettings", (bpy.types.PropertyGroup,), {"__annotations__": annotations})
 

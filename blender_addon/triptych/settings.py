@@ -5,8 +5,16 @@
 PROPERTIES = {}
 
 
+UNSET = "unset"
+
+
 def property_name(setting):
     return setting.replace(".", "_")
+
+
+def choice_name(setting):
+    """The property that holds "on", "off" or UNSET for a switch whose default is the method's."""
+    return property_name(setting) + "_choice"
 
 
 def as_text(value):
@@ -29,6 +37,7 @@ def changed(scene):
     if scene.render.film_transparent and "film.transparent" in PROPERTIES:
         result["film.transparent"] = "on"
     for setting, name in PROPERTIES.items():
-        if group.is_property_set(name):
+        choice = getattr(group, choice_name(setting), None)
+        if group.is_property_set(name) if choice is None else choice != UNSET:
             result[setting] = as_text(getattr(group, name))
     return result

@@ -91,6 +91,7 @@ TrpStatus trp_render_create(TrpScene* scene, const char* method, TrpRender** ren
                 auto made = std::make_unique<TrpRender>();
                 made->snapshot = scene->snapshot;
                 made->method = m;
+                made->settings = default_settings(method);
                 *render = made.release();
                 return TRP_OK;
             }

@@ -1,12 +1,20 @@
 // Methods, settings, passes and node types describe themselves.
 #include "api/guard.h"
 #include "api/handles.h"
+#include "raster/rasterizer.h"
 #include "scene/nodes.h"
 #include "trace/ray_casting.h"
 
 namespace trp {
 
 const MethodRow kMethods[] = {
+    {"visible_surface", "Visible Surfaces", "The nearest surface in each pixel, under ambient light alone",
+     visible_surface},
+    {"flat", "Flat Shading", "Light and highlight once for each polygon", flat_shading},
+    {"gouraud", "Gouraud Shading", "Light and highlight at each vertex, their colours interpolated across polygons",
+     gouraud_shading},
+    {"phong", "Phong Shading", "Normals interpolated across polygons; light and highlight at each pixel",
+     phong_shading},
     {"ray_casting", "Ray Casting",
      "One ray to a sample: the nearest surface with light, shadow and highlight, no reflections", ray_casting},
 };
@@ -58,7 +66,7 @@ TrpStatus trp_setting_info(uint32_t index, TrpSettingInfo* info) {
         const SettingRow& row = kSettings[index];
         write_struct(info,
                      {0, row.type, row.name, row.label, row.description, row.unit, row.default_value, row.minimum,
-                      row.maximum, row.choices, row.methods},
+                      row.maximum, row.choices, row.methods, row.method_defaults},
                      "info");
         return TRP_OK;
     });

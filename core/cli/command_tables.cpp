@@ -94,6 +94,8 @@ int print_settings(bool as_json) {
             const std::string unit = text_or_empty(setting.unit);
             fmt::print("{:<26} {}\n{:<26} {}{}, default {}\n", setting.name, text_or_empty(setting.description), "",
                        range_text(setting), unit.empty() ? "" : " " + unit, text_or_empty(setting.default_value));
+            const std::vector<std::string> others = words(setting.method_defaults);
+            if (!others.empty()) fmt::print("{:<26} {}\n", "", fmt::join(others, ", "));
             continue;
         }
         ordered_json entry = {{"name", setting.name},
@@ -103,6 +105,10 @@ int print_settings(bool as_json) {
                               {"unit", text_or_empty(setting.unit)},
                               {"description", text_or_empty(setting.description)},
                               {"methods", words(setting.methods)}};
+        for (const std::string& word : words(setting.method_defaults)) {
+            const size_t at = word.find('=');
+            entry["method_defaults"][word.substr(0, at)] = word.substr(at + 1);
+        }
         // JSON has no infinity.
         const auto bound = [&](double value) { return std::isfinite(value) ? ordered_json(value) : ordered_json(); };
         if (has_range(setting.type)) {

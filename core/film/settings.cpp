@@ -17,46 +17,53 @@ const char* const kFilters[] = {"box", "gaussian", "blackman_harris", nullptr};
 }  // namespace
 
 const SettingRow kSettings[] = {
-    {TRP_TYPE_INT, "samples", "Samples", "Rays through each pixel", "", "16", 1, 65536, nullptr, "*",
-     [](Settings& s, const double* v) { s.samples = static_cast<uint32_t>(*v); }},
-    {TRP_TYPE_INT, "seed", "Seed", "Another seed gives other noise", "", "0", 0, 2147483647, nullptr, "*",
+    {TRP_TYPE_INT, "samples", "Samples",
+     "Rays through each pixel; in the rasterizer, samples of large lights in each pixel", "", "16", 1, 65536, nullptr,
+     "*", "", [](Settings& s, const double* v) { s.samples = static_cast<uint32_t>(*v); }},
+    {TRP_TYPE_INT, "seed", "Seed", "Another seed gives other noise", "", "0", 0, 2147483647, nullptr, "*", "",
      [](Settings& s, const double* v) { s.seed = static_cast<uint32_t>(*v); }},
-    {TRP_TYPE_INT, "threads", "Threads", "Threads that work; 0 uses every core", "", "0", 0, 1024, nullptr, "*",
+    {TRP_TYPE_INT, "threads", "Threads", "Threads that work; 0 uses every core", "", "0", 0, 1024, nullptr, "*", "",
      [](Settings& s, const double* v) { s.threads = static_cast<uint32_t>(*v); }},
-    {TRP_TYPE_BOOL, "shadows", "Shadows", "Lights are blocked by what stands in their way", "", "on", 0, 1, nullptr,
-     "*", [](Settings& s, const double* v) { s.illumination.shadows = *v != 0; }},
+    {TRP_TYPE_BOOL, "shadows", "Shadows",
+     "Lights are blocked by what stands in their way; the classic methods of the rasterizer have none unless asked", "",
+     "on", 0, 1, nullptr, "*", "visible_surface=off flat=off gouraud=off phong=off",
+     [](Settings& s, const double* v) { s.illumination.shadows = *v != 0; }},
     {TRP_TYPE_ENUM, "shading.specular", "Specular",
      "The highlight of lights (not of the world): none, Phong's (V·R)^n, or Blinn's (N·H)^n, which is about twice as "
      "wide for the same n",
-     "", "phong", 0, 0, kSpeculars, "*",
+     "", "phong", 0, 0, kSpeculars, "*", "",
      [](Settings& s, const double* v) { s.illumination.specular = static_cast<Specular>(*v); }},
     {TRP_TYPE_COLOR, "shading.ambient", "Ambient light",
      "I_A, which reaches every surface from everywhere; the world's own light is sampled and needs none", "W/(m² sr)",
-     "0,0,0", 0, 1e6, nullptr, "*",
+     "0,0,0", 0, 1e6, nullptr, "*", "",
      [](Settings& s, const double* v) {
          s.illumination.ambient = Vec3(static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]));
      }},
     {TRP_TYPE_ENUM, "shading.normals", "Normals",
-     "The mesh's own normals, or averages of the faces around each position", "", "mesh", 0, 0, kNormals, "*",
+     "The mesh's own normals, or averages of the faces around each position", "", "mesh", 0, 0, kNormals, "*", "",
      [](Settings& s, const double* v) { s.normals = static_cast<NormalChoice>(*v); }},
     {TRP_TYPE_ENUM, "shading.falloff", "Falloff",
      "How light fades with distance: each light's own way, not at all, with distance, or with its square; all agree at "
      "one metre",
-     "", "light", 0, 0, kFalloffs, "*",
+     "", "light", 0, 0, kFalloffs, "*", "",
      [](Settings& s, const double* v) {
          constexpr int32_t kOf[] = {-1, TRP_FALLOFF_CONSTANT, TRP_FALLOFF_LINEAR, TRP_FALLOFF_PHYSICAL};
          s.illumination.falloff = kOf[static_cast<int>(*v)];
      }},
     {TRP_TYPE_ENUM, "film.filter", "Pixel filter", "How samples are weighed around a pixel", "", "blackman_harris", 0,
-     0, kFilters, "*", [](Settings& s, const double* v) { s.filter = static_cast<PixelFilter::Kind>(*v); }},
+     0, kFilters, "*", "", [](Settings& s, const double* v) { s.filter = static_cast<PixelFilter::Kind>(*v); }},
     {TRP_TYPE_FLOAT, "film.filter_width", "Filter width",
      "Width of the pixel filter; 0 sends every ray through the pixel's centre", "pixels", "1.5", 0, 16, nullptr, "*",
-     [](Settings& s, const double* v) { s.filter_width = static_cast<float>(*v); }},
+     "", [](Settings& s, const double* v) { s.filter_width = static_cast<float>(*v); }},
     {TRP_TYPE_BOOL, "film.transparent", "Transparent", "The background is left out of the picture, with an alpha of 0",
-     "", "off", 0, 1, nullptr, "*", [](Settings& s, const double* v) { s.transparent = *v != 0; }},
+     "", "off", 0, 1, nullptr, "*", "", [](Settings& s, const double* v) { s.transparent = *v != 0; }},
     {TRP_TYPE_INT, "film.tile_size", "Tile size",
      "Side of the tiles in which the picture is made; the picture does not depend on it", "pixels", "64", 16, 4096,
-     nullptr, "*", [](Settings& s, const double* v) { s.tile_size = static_cast<uint32_t>(*v); }},
+     nullptr, "*", "", [](Settings& s, const double* v) { s.tile_size = static_cast<uint32_t>(*v); }},
+    {TRP_TYPE_INT, "raster.samples", "Edge samples",
+     "Samples of each pixel for smooth edges; 1 sees what lies at the pixel's centre", "", "8", 1, 32, nullptr,
+     "visible_surface flat gouraud phong", "",
+     [](Settings& s, const double* v) { s.raster_samples = static_cast<uint32_t>(*v); }},
 };
 const uint32_t kSettingCount = sizeof kSettings / sizeof kSettings[0];
 
@@ -91,6 +98,18 @@ std::vector<double> read_numbers(const SettingRow& row, const std::string& text)
 }
 
 }  // namespace
+
+Settings default_settings(const std::string& method) {
+    Settings settings;
+    for (uint32_t i = 0; i < kSettingCount; ++i) {
+        const std::string all = std::string(" ") + kSettings[i].method_defaults + " ";
+        const size_t at = all.find(" " + method + "=");
+        if (at == std::string::npos) continue;
+        const size_t begin = at + method.size() + 2;
+        set_setting(settings, kSettings[i].name, all.substr(begin, all.find(' ', begin) - begin));
+    }
+    return settings;
+}
 
 void set_setting(Settings& settings, const std::string& name, const std::string& value) {
     for (uint32_t i = 0; i < kSettingCount; ++i) {

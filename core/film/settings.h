@@ -18,6 +18,7 @@ struct Settings {
     float filter_width = 1.5f;
     bool transparent = false;
     uint32_t tile_size = 64;
+    uint32_t raster_samples = 8;
 };
 
 struct SettingRow {
@@ -26,12 +27,16 @@ struct SettingRow {
     double minimum, maximum;
     const char* const* choices;  // null-terminated; ENUM alone
     const char* methods;
+    const char* method_defaults;  // "METHOD=VALUE" with a space between, where they differ from default_value
     // Takes a value that is checked: numbers by component, or the index of the choice.
     void (*set)(Settings&, const double*);
 };
 
 extern const SettingRow kSettings[];
 extern const uint32_t kSettingCount;
+
+// The settings that a method starts with.
+Settings default_settings(const std::string& method);
 
 // Sets the named setting from text; throws Error where the name or the value is not of the table.
 void set_setting(Settings& settings, const std::string& name, const std::string& value);

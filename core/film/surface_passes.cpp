@@ -38,13 +38,11 @@ void add_surfaces(const SeenSurfaces& seen, uint8_t* first, BlockSums& sums) {
         sums.add(kNormal, i, points.normal.get(i) * weights[i]);
         sums.add(kAlbedo, i, seen.coefficients.diffuse.get(i) * weights[i]);
         sums.add(kEmit, i, seen.coefficients.emission.get(i) * weights[i]);
-        if (seen.arriving) {
-            Vec3 share(1, 1, 1);
-            for (int c = 0; c < 3; ++c)
-                if (seen.arriving->unblocked[c][i] > 0)
-                    share[c] = seen.arriving->blocked[c][i] / seen.arriving->unblocked[c][i];
-            sums.add(kShadow, i, share * weights[i]);
-        }
+        Vec3 share(1, 1, 1);
+        for (int c = 0; c < 3 && seen.arriving; ++c)
+            if (seen.arriving->unblocked[c][i] > 0)
+                share[c] = seen.arriving->blocked[c][i] / seen.arriving->unblocked[c][i];
+        sums.add(kShadow, i, share * weights[i]);
         if (!first || first[i]) continue;
         first[i] = 1;
         add_first(seen, i, sums);

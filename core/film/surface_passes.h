@@ -12,7 +12,7 @@ struct SeenSurfaces {
     const Coefficients& coefficients;
     const LaneVec3& radiance;       // 0 where a lane sees nothing
     const float* throughput;        // of the surfaces before
-    const ArrivingLight* arriving;  // null where the Shadow pass was not asked for
+    const ArrivingLight* arriving;  // null: all light arrives, or the Shadow pass was not asked for
 };
 
 // Adds the lanes that see a surface. `first`: null, or in the first sample, whether a lane has its values of passes

@@ -86,6 +86,14 @@ const NormalLayer& Surface::averaged_normals() const {
     return averaged_;
 }
 
+const ClusterSet& Surface::clusters() const {
+    std::call_once(clusters_once_, [this] {
+        clusters_ =
+            make_clusters(mesh_->positions.data(), mesh_->vertex_count, triangle_vertices(), triangle_count_, bounds_);
+    });
+    return clusters_;
+}
+
 uint64_t Surface::bytes() const {
     return sizeof(uint32_t) * (triangle_vertices_.size() + triangle_corners_.size() + triangle_faces_.size()) +
            sizeof(Vec3) * (normal_values_.size() + averaged_values_.size());

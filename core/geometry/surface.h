@@ -6,17 +6,9 @@
 #include <mutex>
 #include <vector>
 
-#include "scene/mesh.h"
+#include "geometry/clusters.h"
 
 namespace trp {
-
-struct Bounds {
-    Vec3 min{1e38f, 1e38f, 1e38f}, max{-1e38f, -1e38f, -1e38f};
-    bool empty() const { return min.x > max.x; }
-    void extend(const Vec3& p) {
-        for (int k = 0; k < 3; ++k) min[k] = std::min(min[k], p[k]), max[k] = std::max(max[k], p[k]);
-    }
-};
 
 // Shading normals, unit length, object space: none (flat), one to a vertex, or one to a corner.
 struct NormalLayer {
@@ -44,6 +36,8 @@ class Surface {
     // Averages over all faces around each position, vertices welded where they coincide (shading.normals = averaged).
     // Made on first use. Any thread.
     const NormalLayer& averaged_normals() const;
+    // The triangles in groups, for projection. Made on first use. Any thread.
+    const ClusterSet& clusters() const;
     bool mixed_smooth() const { return mixed_smooth_; }        // some faces are flat in spite of normals()
     const Bounds& bounds() const { return bounds_; }           // of the triangles, at the first time sample
     uint32_t dropped_faces() const { return dropped_faces_; }  // without area
@@ -62,6 +56,8 @@ class Surface {
     mutable std::once_flag averaged_once_;
     mutable std::vector<Vec3> averaged_values_;
     mutable NormalLayer averaged_;
+    mutable std::once_flag clusters_once_;
+    mutable ClusterSet clusters_;
 };
 
 }  // namespace trp

@@ -6,12 +6,14 @@
 
 namespace trp {
 
-// Which shading normals: the mesh's own, or averages over all faces around each position.
-enum class NormalChoice { mesh, averaged };
+// Which shading normals: the mesh's own, averages over all faces around each position, or those of the triangles.
+enum class NormalChoice { mesh, averaged, flat };
 enum class Specular { none, phong, blinn };
 
-// Positions, normals and materials of the lanes with a slot.
-void locate(const Snapshot& snapshot, NormalChoice choice, Points& points);
+// Positions, normals and materials of the lanes with a slot, on the side of the surface that the viewer sees, or on
+// that which is said.
+enum class Side { seen, front, back };
+void locate(const Snapshot& snapshot, NormalChoice choice, Points& points, Side side = Side::seen);
 
 // Coefficients of the lanes with a slot; material programs may replace shading normals.
 void evaluate(const Snapshot& snapshot, Points& points, Coefficients& coefficients, ProgramScratch& scratch);

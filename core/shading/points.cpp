@@ -17,36 +17,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace trp::HWY_NAMESPACE {
 
-// Vertices of triangles in world space.
-template <class V>
-struct Corners {
-    Vector3<V> p0, p1, p2;
-    V greatest;  // a bound of all numbers that were added up for a coordinate
-};
-
-template <class D, class VI, class V = hn::Vec<D>>
-Corners<V> load_corners(D d, const PlacedSurface& surface, VI v0, VI v1, VI v2) {
-    Corners<V> c{gather3(d, surface.positions, v0), gather3(d, surface.positions, v1),
-                 gather3(d, surface.positions, v2), hn::Zero(d)};
-    Vector3<V>* const points[3] = {&c.p0, &c.p1, &c.p2};
-    for (Vector3<V>* p : points) {
-        if (surface.baked) {
-            c.greatest = hn::Max(c.greatest, greatest_component(*p));
-            continue;
-        }
-        V out[3];
-        for (int r = 0; r < 3; ++r) {
-            const float* row = surface.world_from_object.rows[r];
-            const V x = hn::Mul(hn::Set(d, row[0]), p->x), y = hn::Mul(hn::Set(d, row[1]), p->y),
-                    z = hn::Mul(hn::Set(d, row[2]), p->z), w = hn::Set(d, row[3]);
-            out[r] = hn::Add(hn::Add(x, y), hn::Add(z, w));
-            const V terms = hn::Add(hn::Add(hn::Abs(x), hn::Abs(y)), hn::Add(hn::Abs(z), hn::Abs(w)));
-            c.greatest = hn::Max(c.greatest, terms);
-        }
-        *p = {out[0], out[1], out[2]};
-    }
-    return c;
-}
+constexpr NormalLayer kFlatNormals;
 
 // The cofactor matrix of the surface's transform times n: turns normals, up to length.
 template <class D, class V>
@@ -66,7 +37,7 @@ Vector3<V> unit(D d, const Vector3<V>& v, V side) {
     return scaled * hn::Div(side, hn::Sqrt(hn::Max(dot3(scaled, scaled), tiny)));
 }
 
-void locate_lanes(const Snapshot& snapshot, NormalChoice choice, Points& points) {
+void locate_lanes(const Snapshot& snapshot, NormalChoice choice, Side seen_side, Points& points) {
     const hn::ScalableTag<float> d;
     const hn::RebindToSigned<decltype(d)> di;
     using V = hn::Vec<decltype(d)>;
@@ -106,8 +77,9 @@ void locate_lanes(const Snapshot& snapshot, NormalChoice choice, Points& points)
             if (choice == NormalChoice::mesh && surface.face_smooth)
                 for (int k = 0; k < lanes; ++k)
                     if (is_here[k]) is_smooth[k] = -surface.face_smooth[surface.face(points.triangle[i + k])];
-            const NormalLayer& layer =
-                choice == NormalChoice::averaged ? surface.surface->averaged_normals() : surface.normals;
+            const NormalLayer& layer = choice == NormalChoice::averaged ? surface.surface->averaged_normals()
+                                       : choice == NormalChoice::flat   ? kFlatNormals
+                                                                        : surface.normals;
             Vector3<V> shading = plane;
             if (layer.domain != NormalLayer::Domain::flat) {
                 const bool by_vertex = layer.domain == NormalLayer::Domain::vertex;
@@ -135,7 +107,10 @@ void locate_lanes(const Snapshot& snapshot, NormalChoice choice, Points& points)
             }
         });
 
-        const auto behind = hn::Lt(dot3(geometric, load3(d, points.to_viewer, i)), zero);
+        const V facing = seen_side == Side::seen    ? dot3(geometric, load3(d, points.to_viewer, i))
+                         : seen_side == Side::front ? one
+                                                    : hn::Neg(one);
+        const auto behind = hn::Lt(facing, zero);
         const V side = hn::IfThenElse(behind, hn::Neg(one), one);
         store3(d, position, points.position, i);
         store3(d, edge1, points.edge1, i);
@@ -158,8 +133,8 @@ HWY_AFTER_NAMESPACE();
 namespace trp {
 HWY_EXPORT(locate_lanes);
 
-void locate(const Snapshot& snapshot, NormalChoice choice, Points& points) {
-    HWY_DYNAMIC_DISPATCH(locate_lanes)(snapshot, choice, points);
+void locate(const Snapshot& snapshot, NormalChoice choice, Points& points, Side side) {
+    HWY_DYNAMIC_DISPATCH(locate_lanes)(snapshot, choice, side, points);
 }
 
 }  // namespace trp

@@ -47,6 +47,37 @@ VI triangle_corner(DI di, const PlacedSurface& surface, VI first, int k) {
     return hn::GatherIndex(di, reinterpret_cast<const int32_t*>(surface.corners) + k, first);
 }
 
+// Vertices of triangles in world space.
+template <class V>
+struct Corners {
+    Vector3<V> p0, p1, p2;
+    V greatest;  // a bound of all numbers that were added up for a coordinate
+};
+
+template <class D, class VI, class V = hn::Vec<D>>
+Corners<V> load_corners(D d, const PlacedSurface& surface, VI v0, VI v1, VI v2) {
+    Corners<V> c{gather3(d, surface.positions, v0), gather3(d, surface.positions, v1),
+                 gather3(d, surface.positions, v2), hn::Zero(d)};
+    Vector3<V>* const points[3] = {&c.p0, &c.p1, &c.p2};
+    for (Vector3<V>* p : points) {
+        if (surface.baked) {
+            c.greatest = hn::Max(c.greatest, greatest_component(*p));
+            continue;
+        }
+        V out[3];
+        for (int r = 0; r < 3; ++r) {
+            const float* row = surface.world_from_object.rows[r];
+            const V x = hn::Mul(hn::Set(d, row[0]), p->x), y = hn::Mul(hn::Set(d, row[1]), p->y),
+                    z = hn::Mul(hn::Set(d, row[2]), p->z), w = hn::Set(d, row[3]);
+            out[r] = hn::Add(hn::Add(x, y), hn::Add(z, w));
+            const V terms = hn::Add(hn::Add(hn::Abs(x), hn::Abs(y)), hn::Add(hn::Abs(z), hn::Abs(w)));
+            c.greatest = hn::Max(c.greatest, terms);
+        }
+        *p = {out[0], out[1], out[2]};
+    }
+    return c;
+}
+
 }  // namespace trp::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif

@@ -427,6 +427,7 @@ typedef struct TrpSettingInfo {
     double minimum, maximum;    /* INT, FLOAT, COLOR */
     const char* const* choices; /* ENUM: null-terminated */
     const char* methods;        /* names of the methods that use it, with a space between; "*": all */
+    const char* method_defaults; /* "METHOD=VALUE" with a space between, where they are not default_value; or empty */
 } TrpSettingInfo;
 TRP_API uint32_t trp_setting_count(void);
 TRP_API TrpStatus trp_setting_info(uint32_t index, TrpSettingInfo* info);

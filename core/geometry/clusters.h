@@ -1,0 +1,39 @@
+// A surface's triangles in small groups that lie close together, for projection: what a group has in common is done
+// once (its bounds, its vertices).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "scene/mesh.h"
+
+namespace trp {
+
+struct Bounds {
+    Vec3 min{1e38f, 1e38f, 1e38f}, max{-1e38f, -1e38f, -1e38f};
+    bool empty() const { return min.x > max.x; }
+    void extend(const Vec3& p) {
+        for (int k = 0; k < 3; ++k) min[k] = std::min(min[k], p[k]), max[k] = std::max(max[k], p[k]);
+    }
+};
+
+struct Cluster {
+    static constexpr uint32_t kMostTriangles = 128, kMostVertices = 192;
+    Bounds bounds;
+    uint32_t first_triangle = 0, triangle_count = 0;  // in ClusterSet's arrays
+    uint32_t first_vertex = 0, vertex_count = 0;
+};
+
+struct ClusterSet {
+    std::vector<Cluster> clusters;
+    std::vector<uint32_t> triangles;  // of the surface
+    std::vector<uint32_t> vertices;   // of the mesh
+    // Per triangle, which of the cluster's vertices its corners are. Padded, to be read in whole vectors.
+    std::vector<uint8_t> corners[3];
+};
+
+// Clusters of triangles, three `vertices` to each, in Morton order of their centres.
+ClusterSet make_clusters(const Vec3* positions, uint32_t vertex_count, const uint32_t* vertices,
+                         uint32_t triangle_count, const Bounds& bounds);
+
+}  // namespace trp

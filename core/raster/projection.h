@@ -1,0 +1,44 @@
+// From the scene to the film's fixed-point grid.
+//
+// Film positions count 1/256 pixel from the bottom left. Nearness grows towards the eye and is affine over the film: 1
+// over the depth through a perspective camera, minus the depth through an orthographic one.
+#pragma once
+
+#include <cstdint>
+
+#include "base/vec.h"
+#include "film/view.h"
+
+namespace trp {
+
+inline constexpr int32_t kSubpixels = 256;
+// Film positions this far outside the film, in pixels, are still exact; what reaches farther is cut off.
+inline constexpr float kGuardBand = 16384;
+
+// Rows give film x and y in pixels, times the depth through a perspective camera, and the depth.
+struct FilmTransform {
+    float rows[3][4];
+};
+
+class Projection {
+  public:
+    Projection(const View& view, uint32_t width, uint32_t height);
+
+    bool perspective() const { return perspective_; }
+    uint32_t width() const { return width_; }
+    uint32_t height() const { return height_; }
+    float clip_start() const { return clip_start_; }
+    // What nothing seen can be behind of.
+    float farthest() const { return perspective_ ? 1 / clip_end_ : -clip_end_; }
+    float nearness(float depth) const { return perspective_ ? 1 / depth : -depth; }
+    // For points given before `world_from_object`.
+    FilmTransform transform(const Affine& world_from_object) const;
+
+  private:
+    double rows_[3][4];
+    bool perspective_;
+    uint32_t width_, height_;
+    float clip_start_, clip_end_;
+};
+
+}  // namespace trp

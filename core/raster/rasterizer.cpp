@@ -1,0 +1,282 @@
+#include "raster/rasterizer.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "film/pixel_random.h"
+#include "film/surface_passes.h"
+#include "raster/face_points.h"
+#include "raster/sample_pattern.h"
+#include "raster/seen_points.h"
+#include "raster/vertex_colors.h"
+#include "shading/footprints.h"
+
+namespace trp {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr uint32_t kTileSide = 256;  // pixels: a tile's buffers fit a core's cache, and few clusters lie in two tiles
+constexpr int kGreatestLayers = 64;  // of surfaces with holes in a row behind one sample
+constexpr float kLeastThroughput = 1e-3f;
+
+enum class Evaluation { ambient, polygon, vertex, pixel };
+
+uint64_t nanoseconds(Clock::time_point from, Clock::time_point to) {
+    return static_cast<uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(to - from).count());
+}
+
+// What a thread evaluates with.
+struct Shading {
+    Coefficients coefficients;
+    LaneVec3 radiance, lit;
+    ArrivingLight arriving;
+    LightScratch lights;
+    ProgramScratch program;
+};
+
+// What a thread works with at a tile.
+struct Workspace : Shading {
+    Workspace(const PassList& passes, const TileWork& work)
+        : visibility(work.block_x0 * kBlockSide, work.block_y0 * kBlockSide, work.block_x1 - work.block_x0,
+                     work.block_y1 - work.block_y0),
+          sums(passes) {}
+    VisibilityTile visibility;
+    // Of all pixels, where surfaces have holes.
+    std::vector<float> throughput;
+    std::vector<uint8_t> first;
+
+    LaneVec3 origins, directions;
+    Points points;
+    uint8_t missed[kBatch];
+    BlockSums sums;
+};
+
+// A render's constants.
+struct Rasterizer {
+    const RenderJob& job;
+    const Snapshot& snapshot;
+    Evaluation evaluation;
+    View view;
+    Projection projection;
+    DrawList list;
+    TileLists tiles;
+    std::vector<SampleOffset> pattern;
+    uint32_t light_samples;  // of each shaded point
+    Illumination illumination;
+    bool wants_shadow_pass;
+    SceneColors colors;  // of vertices, where the method evaluates there
+
+    void shade_all_vertices();
+    void tile(const TileWork& work) const;
+    void sample(const TileWork& work, uint32_t number, Workspace& w) const;
+    bool block(uint32_t place, const SampleOffset& offset, uint32_t sample, int layer, Workspace& w) const;
+    void shade(uint32_t block_x, uint32_t block_y, uint32_t sample, int layer, Workspace& w) const;
+    void illuminate(uint32_t block_x, uint32_t block_y, uint32_t number, Coherence coherence, const Points& points,
+                    Shading& w) const;
+};
+
+// The terms of the equation at points whose coefficients are known. `number`: of the light samples that come first.
+void Rasterizer::illuminate(uint32_t block_x, uint32_t block_y, uint32_t number, Coherence coherence,
+                            const Points& points, Shading& w) const {
+    add_ambient(points, w.coefficients, illumination.ambient, w.radiance);
+    if (evaluation == Evaluation::ambient) return;
+    for (int c = 0; c < 3; ++c) {
+        std::fill_n(w.lit[c], kBatch, 0.0f);
+        if (!wants_shadow_pass) continue;
+        std::fill_n(w.arriving.unblocked[c], kBatch, 0.0f);
+        std::fill_n(w.arriving.blocked[c], kBatch, 0.0f);
+    }
+    ShadowCounts shadows;
+    for (uint32_t s = number; s < number + light_samples; ++s)
+        add_lights(
+            snapshot, illumination, coherence,
+            [&](uint32_t pair, float* u, float* v) { random_pair(block_x, block_y, job.settings.seed, s, pair, u, v); },
+            points, w.coefficients, w.lit, wants_shadow_pass ? &w.arriving : nullptr, w.lights, w.program, shadows);
+    const float share = 1 / static_cast<float>(light_samples);
+    for (int c = 0; c < 3; ++c)
+        for (int i = 0; i < kBatch; ++i) w.radiance[c][i] += share * w.lit[c][i];
+    job.counts->shadow_rays += shadows.rays;
+    job.counts->shadow_time += shadows.nanoseconds;
+}
+
+// What the method shows at the points of a block, into w.radiance.
+void Rasterizer::shade(uint32_t block_x, uint32_t block_y, uint32_t sample, int layer, Workspace& w) const {
+    const bool flat = evaluation == Evaluation::polygon;
+    if (flat) move_to_faces(snapshot, view.perspective ? &view.position : nullptr, w.points);
+    locate(snapshot, flat ? NormalChoice::flat : job.settings.normals, w.points);
+    if (flat) {
+        take_face_normals(snapshot, w.points);
+    } else if (snapshot.needs_footprint) {
+        const float scale = std::max(0.125f, 1 / std::sqrt(static_cast<float>(pattern.size())));
+        make_footprints(
+            {w.directions, view.perspective, view.x * (view.step_x * scale), view.y * (view.step_y * scale)}, w.points);
+    }
+    evaluate(snapshot, w.points, w.coefficients, w.program);
+    if (evaluation == Evaluation::vertex) return interpolate_colors(snapshot, colors, w.points, w.radiance);
+    illuminate(block_x, block_y, sample * light_samples,
+               layer == 0 && !flat ? Coherence::coherent : Coherence::incoherent, w.points, w);
+}
+
+// One layer of a sample at a block. Returns whether something may be seen behind it.
+bool Rasterizer::block(uint32_t place, const SampleOffset& offset, uint32_t sample, int layer, Workspace& w) const {
+    const uint32_t x = w.visibility.x0() + place % w.visibility.blocks_across() * kBlockSide,
+                   y = w.visibility.y0() + place / w.visibility.blocks_across() * kBlockSide;
+    const uint32_t* keys = w.visibility.keys(place);
+    Lanes whole;
+    std::fill_n(whole, kBatch, 1.0f);
+    const bool layered = !w.throughput.empty();
+    float* throughput = layered ? &w.throughput[size_t{place} * kBatch] : whole;
+    bool any_missed = false, any_seen = false;
+    for (int i = 0; i < kBatch; ++i) {
+        w.missed[i] = keys[i] == kNothing && throughput[i] > 0;
+        any_missed |= w.missed[i] != 0;
+        any_seen |= keys[i] != kNothing;
+    }
+    if (!any_missed && !any_seen) return false;
+    make_directions(view, {x, y, 0.5f + offset.x / kSubpixels, 0.5f + offset.y / kSubpixels}, w.origins, w.directions);
+    w.sums.clear();
+    if (any_missed) add_background(snapshot, w.directions, w.missed, throughput, job.settings.transparent, w.sums);
+    bool any_left = false;
+    uint8_t own_first[kBatch] = {};
+    uint8_t* first = layered ? &w.first[size_t{place} * kBatch] : own_first;
+    if (any_seen) {
+        find_points(snapshot, list, keys, w.origins, w.directions, w.points);
+        shade(x / kBlockSide, y / kBlockSide, sample, layer, w);
+        add_surfaces(
+            {snapshot, w.points, w.coefficients, w.radiance, throughput, wants_shadow_pass ? &w.arriving : nullptr},
+            sample == 0 ? first : nullptr, w.sums);
+    }
+    if (layered)
+        for (int i = 0; i < kBatch; ++i) {
+            throughput[i] *= keys[i] == kNothing ? 0 : 1 - w.coefficients.alpha[i];
+            if (throughput[i] < kLeastThroughput) {
+                throughput[i] = 0;
+                w.visibility.close(place, i);
+            }
+            any_left |= throughput[i] > 0;
+        }
+    if (sample == 0 && layer == 0 && !layered) finish_depth(first, w.sums);
+    job.film->add_block(x / kBlockSide, y / kBlockSide, w.sums, layer == 0, sample == 0);
+    return any_left;
+}
+
+void Rasterizer::sample(const TileWork& work, uint32_t number, Workspace& w) const {
+    const SampleOffset& offset = pattern[number];
+    const uint32_t blocks = w.visibility.blocks_across() * w.visibility.blocks_up();
+    if (snapshot.any_holes) {
+        w.throughput.assign(size_t{blocks} * kBatch, 1.0f);
+        w.first.assign(size_t{blocks} * kBatch, 0);
+    }
+    bool any_left = true;
+    for (int layer = 0; layer < kGreatestLayers && any_left; ++layer) {
+        const auto start = Clock::now();
+        w.visibility.begin(projection, offset.x, offset.y, layer > 0);
+        for (const uint32_t cluster : tiles.of(work)) {
+            if (*job.cancelled) return;
+            w.visibility.draw(snapshot, projection, list, cluster);
+        }
+        const auto drawn = Clock::now();
+        any_left = false;
+        for (uint32_t place = 0; place < blocks; ++place) {
+            if (*job.cancelled) return;
+            any_left |= block(place, offset, number, layer, w);
+        }
+        job.counts->primary_time += nanoseconds(start, drawn);
+        job.counts->shading_time += nanoseconds(drawn, Clock::now());
+    }
+    if (number > 0 || !snapshot.any_holes || !job.film->passes().has(kDepth)) return;
+    for (uint32_t place = 0; place < blocks; ++place) {
+        w.sums.clear();
+        finish_depth(&w.first[size_t{place} * kBatch], w.sums);
+        job.film->add_block(work.block_x0 + place % w.visibility.blocks_across(),
+                            work.block_y0 + place / w.visibility.blocks_across(), w.sums, 0, true);
+    }
+}
+
+void Rasterizer::tile(const TileWork& work) const {
+    const auto w = std::make_unique<Workspace>(job.film->passes(), work);
+    for (uint32_t s = work.first_sample; s < work.end_sample; ++s) sample(work, s, *w);
+}
+
+// Runs in the current arena.
+void Rasterizer::shade_all_vertices() {
+    std::vector<uint8_t> wanted(snapshot.surfaces.size(), 0);
+    for (const DrawnCluster& cluster : list.clusters) wanted[cluster.slot] = 1;
+    colors = shade_vertices(snapshot, wanted, job.settings.normals, view.perspective ? &view.position : nullptr, view.z,
+                            [&](uint32_t slot, uint32_t batch, bool behind, Points& points, LaneVec3& radiance) {
+                                if (*job.cancelled) return;
+                                const auto w = std::make_unique<Shading>();
+                                locate(snapshot, job.settings.normals, points, behind ? Side::back : Side::front);
+                                evaluate(snapshot, points, w->coefficients, w->program);
+                                // The random sequence of a block far outside of any film.
+                                illuminate(batch, ~slot, 0, Coherence::incoherent, points, *w);
+                                radiance = w->radiance;
+                            });
+}
+
+bool rasterize(RenderJob& job, const RenderEvents& events, Evaluation evaluation, const char* method) {
+    const Snapshot& snapshot = *job.snapshot;
+    if (!snapshot.camera) fail(TRP_ERROR_STATE, "the scene has no camera to render from");
+    const Window& window = job.film->window();
+    const View view = make_view(*snapshot.camera, snapshot.origin, window.width, window.height);
+    if (view.aperture_radius > 0)
+        fail(TRP_ERROR_STATE, "{} cannot show depth of field: use ray_casting, or a camera without an aperture",
+             method);
+    RenderJob tiled = job;
+    tiled.settings.samples = job.settings.raster_samples;
+    tiled.settings.tile_size = std::max(job.settings.tile_size, kTileSide);
+
+    const Projection projection(view, window.width, window.height);
+    Illumination illumination = job.settings.illumination;
+    if (evaluation == Evaluation::ambient && illumination.ambient == Vec3(0, 0, 0))
+        illumination.ambient = Vec3(1, 1, 1);
+    const bool any_sampled = std::any_of(snapshot.lights.begin(), snapshot.lights.end(),
+                                         [](const ReadyLight& light) { return light.is_sampled(); });
+    // Vertices are shaded once for all samples.
+    const uint32_t shadings = evaluation == Evaluation::vertex ? 1 : tiled.settings.samples;
+    const uint32_t light_samples = any_sampled ? (job.settings.samples + shadings - 1) / shadings : 1;
+    const std::vector<SampleOffset> pattern = sample_pattern(job.settings);
+    Rasterizer rasterizer{
+        tiled,
+        snapshot,
+        evaluation,
+        view,
+        projection,
+        {},
+        {},
+        pattern,
+        light_samples,
+        illumination,
+        (evaluation == Evaluation::polygon || evaluation == Evaluation::pixel) && job.film->passes().has(kShadow),
+        {}};
+    Arena arena(job.settings.threads);
+    arena.run([&] {
+        rasterizer.list = make_draw_list(snapshot, projection, reach_of(pattern));
+        rasterizer.tiles = TileLists(rasterizer.list, window, tiled.settings.tile_size);
+        if (evaluation == Evaluation::vertex) rasterizer.shade_all_vertices();
+    });
+    if (events.log)
+        events.log(fmt::format("{} x {} pixels, {} samples, {} lights, {} groups of triangles", window.w, window.h,
+                               tiled.settings.samples, snapshot.lights.size(), rasterizer.list.clusters.size()));
+    return run_tiles(tiled, events, [&](const TileWork& work) { rasterizer.tile(work); });
+}
+
+}  // namespace
+
+bool visible_surface(RenderJob& job, const RenderEvents& events) {
+    return rasterize(job, events, Evaluation::ambient, "visible_surface");
+}
+bool flat_shading(RenderJob& job, const RenderEvents& events) {
+    return rasterize(job, events, Evaluation::polygon, "flat");
+}
+bool gouraud_shading(RenderJob& job, const RenderEvents& events) {
+    return rasterize(job, events, Evaluation::vertex, "gouraud");
+}
+bool phong_shading(RenderJob& job, const RenderEvents& events) {
+    return rasterize(job, events, Evaluation::pixel, "phong");
+}
+
+}  // namespace trp
