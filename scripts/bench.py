@@ -28,7 +28,7 @@ TIMEOUT = 1800  # seconds
 class Benchmark:
     names: list[str]  # of its figures
     program: str
-    scene: str
+    scene: str  # empty: it makes its own
     arguments: list[str] = field(default_factory=list)
 
     def chosen(self, only: list[str]) -> bool:
@@ -39,6 +39,11 @@ def ray_casting(scene: str, light: str, goal: float) -> Benchmark:
     name = f"ray_casting.{scene}"
     arguments = ["--name", name, "--goal", str(goal), "--light", *light.split()]
     return Benchmark([name], "ray_casting_bench", scene, arguments)
+
+
+def raster(name: str, goal: float, *arguments: str) -> Benchmark:
+    name = f"raster.{name}"
+    return Benchmark([name], "raster_bench", "", ["--name", name, "--goal", str(goal), *arguments])
 
 
 # Lights stand where the camera sees their shadows; metres, Z up.
@@ -52,6 +57,10 @@ BENCHMARKS = [
         "tower_of_meshes",
         ["--name", "load.tower_of_meshes", "--load-goal", "1", "--memory-goal", "2.2"],
     ),
+    raster("phong_1m", 0.25, "--side", "289"),
+    raster("phong_100k", 0.333, "--side", "91"),
+    raster("phong_layers", 0.4, "--shape", "layers"),
+    raster("phong_1m_4_samples", 0.25, "--side", "289", "--samples", "4"),
     Benchmark(["edit", "cancel"], "edit_bench", "gallery", ["--edit-goal", "0.1", "--cancel-goal", "0.1"]),
 ]
 
@@ -80,16 +89,13 @@ def build() -> Path:
 
 
 def scene_file(name: str) -> Path:
-    committed, made = ROOT / "scenes" / f"{name}.glb", ROOT / "build" / "scenes" / f"{name}.glb"
-    if committed.is_file():
-        return committed
-    if not made.is_file():
-        call([str(ROOT / "scripts" / "make-scenes"), name])
-    return made
+    committed = ROOT / "scenes" / f"{name}.glb"
+    return committed if committed.is_file() else ROOT / "build" / "scenes" / f"{name}.glb"
 
 
 def rows_of(benchmark: Benchmark, directory: Path, threads: int, repeats: int) -> list[dict]:
-    command = [str(directory / "bin" / benchmark.program), str(scene_file(benchmark.scene))]
+    command = [str(directory / "bin" / benchmark.program)]
+    command += [str(scene_file(benchmark.scene))] if benchmark.scene else []
     command += [*benchmark.arguments, "--threads", str(threads), "--repeats", str(repeats)]
     try:
         done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True, check=True, timeout=TIMEOUT)

@@ -19,6 +19,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 template <class DU, class V = hn::Vec<DU>>
 V reverse_bits(DU du, V x) {
+#if HWY_TARGET == HWY_SCALAR
     auto swap = [&](V v, uint32_t mask, auto shift) {
         constexpr int kShift = decltype(shift)::value;
         const V m = hn::Set(du, mask);
@@ -29,6 +30,18 @@ V reverse_bits(DU du, V x) {
     x = swap(x, 0x0F0F0F0Fu, std::integral_constant<int, 4>{});
     x = swap(x, 0x00FF00FFu, std::integral_constant<int, 8>{});
     return hn::Or(hn::ShiftRight<16>(x), hn::ShiftLeft<16>(x));
+#else
+    // The bytes of each number from its last, and in them each half by a table.
+    const hn::Repartition<uint8_t, DU> d8;
+    alignas(16) static constexpr uint8_t kBytes[16] = {3, 2, 1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14, 13, 12};
+    alignas(16) static constexpr uint8_t kHalf[16] = {0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15};
+    const auto bytes = hn::TableLookupBytes(hn::BitCast(d8, x), hn::LoadDup128(d8, kBytes));
+    const auto low = hn::And(bytes, hn::Set(d8, uint8_t{0x0F}));
+    const auto high = hn::BitCast(d8, hn::And(hn::ShiftRight<4>(hn::BitCast(du, bytes)), hn::Set(du, 0x0F0F0F0Fu)));
+    const auto table = hn::LoadDup128(d8, kHalf);
+    const V new_high = hn::ShiftLeft<4>(hn::BitCast(du, hn::TableLookupBytes(table, low)));
+    return hn::Or(new_high, hn::BitCast(du, hn::TableLookupBytes(table, high)));
+#endif
 }
 
 // Laine-Karras: bits depend only on lower ones, which is Owen scrambling of reversed bits.

@@ -104,20 +104,20 @@ void Caster::add_seen_lights(Workspace& w) const {
 
 // One sample of all pixels of a block: the nearest surfaces, and where they have holes, those behind.
 void Caster::layers(uint32_t block_x, uint32_t block_y, uint32_t sample, Workspace& w) const {
-    const auto start = Clock::now();
+    auto start = Clock::now();
     make_primary_rays(maker, block_x, block_y, sample, w.rays);
     std::fill_n(w.active, kBatch, uint8_t{1});
     std::fill_n(w.throughput, kBatch, 1.0f);
     uint8_t first[kBatch] = {};
-    uint64_t primary_rays = kBatch, primary_time = nanoseconds(start, Clock::now());
+    uint64_t primary_rays = kBatch, primary_time = 0;
     // Packets are whole and their lanes fixed to the film in the first layer alone.
     Coherence coherence = Coherence::coherent;
     for (int layer = 0; layer < kGreatestLayers; ++layer) {
-        const auto before = Clock::now();
+        if (layer > 0) start = Clock::now();
         trace_primary(snapshot.rays->embree(), w.active, coherence, w.rays);
         read_hits(w.rays, w.active, w.points);
         if (sees_lights) add_seen_lights(w);
-        primary_time += nanoseconds(before, Clock::now());
+        primary_time += nanoseconds(start, Clock::now());
         bool any_missed = false, any_hit = false;
         for (int i = 0; i < kBatch; ++i) {
             w.missed[i] = w.active[i] && w.points.slot[i] == kNoSlot;
@@ -156,6 +156,7 @@ void Caster::layers(uint32_t block_x, uint32_t block_y, uint32_t sample, Workspa
 
 void Caster::block(uint32_t block_x, uint32_t block_y, const TileWork& work, Workspace& w) const {
     w.sums.clear();
+    prepare_block(maker, block_x, block_y, w.rays);
     for (uint32_t sample = work.first_sample; sample < work.end_sample; ++sample) {
         if (*job.cancelled) return;
         layers(block_x, block_y, sample, w);

@@ -46,6 +46,16 @@ void aperture_point(D d, const View& view, V u, V v, V& x, V& y) {
     y = hn::MulAdd(w0, hn::Sin(d, angle0), hn::Mul(w1, hn::Sin(d, angle1)));
 }
 
+void make_keys(const RayMaker& maker, uint32_t block_x, uint32_t block_y, BlockRays& rays) {
+    const hn::CappedTag<float, 16> d;
+    const hn::RebindToUnsigned<decltype(d)> du;
+    for (int i = 0; i < kBatch; i += static_cast<int>(hn::Lanes(d))) {
+        auto px = hn::Zero(du), py = hn::Zero(du);
+        pixel_of(d, block_x, block_y, i, px, py);
+        hn::Store(pixel_key(d, px, py, maker.seed), du, rays.keys + i);
+    }
+}
+
 void make_rays(const RayMaker& maker, uint32_t block_x, uint32_t block_y, uint32_t sample, BlockRays& rays) {
     const hn::CappedTag<float, 16> d;
     const hn::RebindToUnsigned<decltype(d)> du;
@@ -56,7 +66,7 @@ void make_rays(const RayMaker& maker, uint32_t block_x, uint32_t block_y, uint32
     for (int i = 0; i < kBatch; i += static_cast<int>(hn::Lanes(d))) {
         auto px = hn::Zero(du), py = hn::Zero(du);
         pixel_of(d, block_x, block_y, i, px, py);
-        const auto key = pixel_key(d, px, py, maker.seed);
+        const auto key = hn::Load(du, rays.keys + i);
         V u = hn::Zero(d), v = hn::Zero(d);
         sobol_pair(d, key, sample, 0, u, v);
         const V film_x = hn::Add(hn::Add(hn::ConvertTo(d, hn::BitCast(di, px)), set(0.5f)),
@@ -134,8 +144,13 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace trp {
+HWY_EXPORT(make_keys);
 HWY_EXPORT(make_rays);
 HWY_EXPORT(read_hit_lanes);
+
+void prepare_block(const RayMaker& maker, uint32_t block_x, uint32_t block_y, BlockRays& rays) {
+    HWY_DYNAMIC_DISPATCH(make_keys)(maker, block_x, block_y, rays);
+}
 
 void make_primary_rays(const RayMaker& maker, uint32_t block_x, uint32_t block_y, uint32_t sample, BlockRays& rays) {
     HWY_DYNAMIC_DISPATCH(make_rays)(maker, block_x, block_y, sample, rays);

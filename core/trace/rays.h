@@ -15,6 +15,7 @@ inline constexpr int kPackets = kBatch / 16;  // packets of a block
 struct BlockRays {
     alignas(64) RTCRayHit16 packets[kPackets];
     LaneVec3 origin, direction;
+    alignas(64) uint32_t keys[kBatch];  // of the pixels' random sequences
 };
 
 // What primary rays are made of, once for a render.
@@ -27,6 +28,9 @@ struct RayMaker {
 
 // What all rays of a block have in common, once: they meet what `mask` names.
 void prepare(BlockRays& rays, unsigned mask);
+
+// For the block whose rays are to be made, whatever the sample.
+void prepare_block(const RayMaker& maker, uint32_t block_x, uint32_t block_y, BlockRays& rays);
 
 void make_primary_rays(const RayMaker& maker, uint32_t block_x, uint32_t block_y, uint32_t sample, BlockRays& rays);
 
