@@ -126,7 +126,7 @@ def main(folder):
             use_engine(bpy.context.scene, method, 64)
             path = folder / f"{method}.png"
             tiles.append((path, label, render_to(path)))
-            print(f"demo: {path.name} in {tiles[-1][2]:.1f} s")
+            print(f"demo: {path.name} in {tiles[-1][2]:.1f} s", flush=True)
         render_sheet(folder / "methods.png", tiles)
     finally:
         triptych.unregister()
