@@ -1,5 +1,9 @@
 #include "film/film.h"
 
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
 #include <algorithm>
 #include <cstdlib>
 
@@ -12,18 +16,6 @@ void PassList::add(PassId pass) {
     first_channel_[pass] = channels_;
     channels_ += static_cast<int>(channel_count(pass));
     order_.push_back(pass);
-}
-
-BlockSums::BlockSums(const PassList& passes) : passes_(passes), values_(passes.channels()) {}
-
-void BlockSums::clear() {
-    for (Channel& channel : values_) std::fill_n(channel.data, kBatch, 0.0f);
-}
-
-void BlockSums::add(PassId pass, int lane, const Vec3& v) {
-    if (!passes_.has(pass)) return;
-    const int first = passes_.first_channel(pass);
-    for (int c = 0; c < 3; ++c) values_[first + c].data[lane] += v[c];
 }
 
 void check_window(const Window& window) {
@@ -57,10 +49,17 @@ Film::Film(const Window& window, const PassList& passes) : window_(window), pass
     block_samples_.assign(blocks, 0);
     const size_t block = kBatch * static_cast<size_t>(passes.channels());
     // Zeroed pages come from the system as they are first touched, by the threads that fill them.
-    values_.reset(static_cast<float*>(std::calloc(blocks * block, sizeof(float))));
+    const size_t bytes = blocks * block * sizeof(float);
+    values_.reset(static_cast<float*>(std::calloc(bytes, 1)));
     if (!values_)
         fail(TRP_ERROR_MEMORY, "no memory for a film of {} x {} pixels with {} channels", window.w, window.h,
              passes.channels());
+#ifdef __linux__
+    // Large pages, where the system has them, make the first touch of a film much cheaper.
+    constexpr uintptr_t kPage = 4096;
+    const auto begin = (reinterpret_cast<uintptr_t>(values_.get()) + kPage - 1) / kPage * kPage;
+    if (bytes > (size_t{4} << 20)) madvise(reinterpret_cast<void*>(begin), bytes - kPage, MADV_HUGEPAGE);
+#endif
 }
 
 uint32_t Film::block_index(uint32_t block_x, uint32_t block_y) const {
@@ -72,16 +71,13 @@ const float* Film::channel(uint32_t block, PassId pass) const {
     return &values_[kBatch * (block * channels + static_cast<size_t>(passes_.first_channel(pass)))];
 }
 
-void Film::add_block(uint32_t block_x, uint32_t block_y, const BlockSums& sums, uint32_t samples, bool first) {
-    const uint32_t block = block_index(block_x, block_y);
-    float* to = &values_[size_t{block} * kBatch * static_cast<size_t>(passes_.channels())];
-    for (const PassId pass : passes_.order()) {
-        const int begin = passes_.first_channel(pass), end = begin + static_cast<int>(channel_count(pass));
-        if (!kPasses[pass].averaged && !first) continue;
-        for (int c = begin; c < end; ++c)
-            for (int lane = 0; lane < kBatch; ++lane) to[c * kBatch + lane] += sums.values_[c].data[lane];
-    }
-    block_samples_[block] += samples;
+BlockSums Film::block(uint32_t block_x, uint32_t block_y) {
+    const auto channels = static_cast<size_t>(passes_.channels());
+    return {passes_, &values_[size_t{block_index(block_x, block_y)} * kBatch * channels]};
+}
+
+void Film::add_samples(uint32_t block_x, uint32_t block_y, uint32_t samples) {
+    block_samples_[block_index(block_x, block_y)] += samples;
 }
 
 void Film::read(PassId pass, uint32_t x, uint32_t y, uint32_t w, uint32_t h, float* out) const {

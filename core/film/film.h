@@ -41,30 +41,30 @@ class PassList {
     std::vector<PassId> order_;
 };
 
-// What a method writes for one block: for each pass asked for, sums over samples or the first sample's values.
+// The film's memory of one block, into which methods add: for each pass asked for, sums over samples or the first
+// sample's values, lane by lane.
 class BlockSums {
   public:
-    explicit BlockSums(const PassList& passes);
-    const PassList& passes() const { return passes_; }
-    void clear();
+    BlockSums() = default;
+    BlockSums(const PassList& passes, float* values) : passes_(&passes), values_(values) {}
+    const PassList& passes() const { return *passes_; }
     // The lanes of a channel; null where the pass was not asked for.
-    float* channel(PassId pass, int c) {
-        return passes_.has(pass) ? values_[passes_.first_channel(pass) + c].data : nullptr;
+    float* channel(PassId pass, int c) const {
+        return passes_->has(pass) ? values_ + (passes_->first_channel(pass) + c) * kBatch : nullptr;
     }
     // The lanes of Combined, which is always asked for.
-    std::array<float*, 4> combined() {
+    std::array<float*, 4> combined() const {
         return {channel(kCombined, 0), channel(kCombined, 1), channel(kCombined, 2), channel(kCombined, 3)};
     }
     // Adds a colour or vector to a pass that was asked for; without effect otherwise.
-    void add(PassId pass, int lane, const Vec3& v);
+    void add(PassId pass, int lane, const Vec3& v) const {
+        if (float* values = channel(pass, 0))
+            for (int c = 0; c < 3; ++c) values[c * kBatch + lane] += v[c];
+    }
 
   private:
-    friend class Film;
-    struct alignas(64) Channel {
-        Lanes data;
-    };
-    const PassList& passes_;
-    std::vector<Channel> values_;
+    const PassList* passes_ = nullptr;
+    float* values_ = nullptr;
 };
 
 class Film {
@@ -74,8 +74,10 @@ class Film {
 
     const Window& window() const { return window_; }
     const PassList& passes() const { return passes_; }
-    // Adds a block, whose grid place is (block_x, block_y).
-    void add_block(uint32_t block_x, uint32_t block_y, const BlockSums& sums, uint32_t samples, bool first);
+    // The block at grid place (block_x, block_y): methods add to it, one thread at a time, and then say how many
+    // samples they have added.
+    BlockSums block(uint32_t block_x, uint32_t block_y);
+    void add_samples(uint32_t block_x, uint32_t block_y, uint32_t samples);
     // The pixels of a pass, channels interleaved; sums are divided by the number of samples.
     void read(PassId pass, uint32_t x, uint32_t y, uint32_t w, uint32_t h, float* out) const;
 
@@ -90,7 +92,7 @@ class Film {
     struct Free {
         void operator()(float* p) const;
     };
-    std::unique_ptr<float[], Free> values_;  // block by block, and channel by channel as in BlockSums
+    std::unique_ptr<float[], Free> values_;  // block by block, and channel by channel
 };
 
 // Throws Error unless 1 ≤ width, height ≤ 65536, the window lies within, and its pixels can be held.

@@ -5,7 +5,7 @@ namespace {
 
 constexpr float kNothingSeen = 1e10f;  // depth, as Blender has it
 
-void add_first(const SeenSurfaces& seen, int i, BlockSums& sums) {
+void add_first(const SeenSurfaces& seen, int i, const BlockSums& sums) {
     const Points& points = seen.points;
     const PlacedSurface& surface = seen.snapshot.surfaces[points.slot[i]];
     if (float* depth = sums.channel(kDepth, 0)) depth[i] = points.depth[i];
@@ -21,7 +21,7 @@ void add_first(const SeenSurfaces& seen, int i, BlockSums& sums) {
 
 }  // namespace
 
-void add_surfaces(const SeenSurfaces& seen, uint8_t* first, BlockSums& sums) {
+void add_surfaces(const SeenSurfaces& seen, uint8_t* first, const BlockSums& sums) {
     const Points& points = seen.points;
     const std::array<float*, 4> rgba = sums.combined();
     // Without branches, for the compiler to make vectors of.
@@ -50,23 +50,23 @@ void add_surfaces(const SeenSurfaces& seen, uint8_t* first, BlockSums& sums) {
 }
 
 void add_background(const Snapshot& snapshot, const LaneVec3& directions, const uint8_t* missed,
-                    const float* throughput, bool transparent, BlockSums& sums) {
+                    const float* throughput, bool transparent, const BlockSums& sums) {
+    Lanes weights;
+    for (int i = 0; i < kBatch; ++i) weights[i] = missed[i] ? throughput[i] : 0;
+    for (int c = 0; c < 3; ++c)
+        if (float* shadow = sums.channel(kShadow, c))
+            for (int i = 0; i < kBatch; ++i) shadow[i] += weights[i];
+    if (transparent) return;
     const std::array<float*, 4> rgba = sums.combined();
-    if (!transparent) {
-        LaneVec3 radiance;
-        sample_background(snapshot, directions, missed, radiance);
-        for (int i = 0; i < kBatch; ++i) {
-            const float weight = missed[i] ? throughput[i] : 0;
-            for (int c = 0; c < 3; ++c) rgba[c][i] += weight * radiance[c][i];
-            rgba[3][i] += weight;
-        }
-    }
-    if (!sums.channel(kShadow, 0)) return;
-    for (int i = 0; i < kBatch; ++i)
-        if (missed[i]) sums.add(kShadow, i, Vec3(1, 1, 1) * throughput[i]);
+    for (int i = 0; i < kBatch; ++i) rgba[3][i] += weights[i];
+    if (snapshot.world.radiance == Vec3(0, 0, 0) || !snapshot.world.visible_camera) return;
+    static thread_local LaneVec3 radiance;
+    sample_background(snapshot, directions, missed, radiance);
+    for (int c = 0; c < 3; ++c)
+        for (int i = 0; i < kBatch; ++i) rgba[c][i] += weights[i] * radiance[c][i];
 }
 
-void finish_depth(const uint8_t* first, BlockSums& sums) {
+void finish_depth(const uint8_t* first, const BlockSums& sums) {
     if (float* depth = sums.channel(kDepth, 0))
         for (int i = 0; i < kBatch; ++i)
             if (!first[i]) depth[i] = kNothingSeen;

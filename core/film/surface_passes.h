@@ -17,13 +17,13 @@ struct SeenSurfaces {
 
 // Adds the lanes that see a surface. `first`: null, or in the first sample, whether a lane has its values of passes
 // that are not averaged; they are written for those that have not, and marked.
-void add_surfaces(const SeenSurfaces& seen, uint8_t* first, BlockSums& sums);
+void add_surfaces(const SeenSurfaces& seen, uint8_t* first, const BlockSums& sums);
 
 // Adds the background to the lanes that are `missed`.
 void add_background(const Snapshot& snapshot, const LaneVec3& directions, const uint8_t* missed,
-                    const float* throughput, bool transparent, BlockSums& sums);
+                    const float* throughput, bool transparent, const BlockSums& sums);
 
 // After the first sample: the depth of lanes that have seen no surface.
-void finish_depth(const uint8_t* first, BlockSums& sums);
+void finish_depth(const uint8_t* first, const BlockSums& sums);
 
 }  // namespace trp

@@ -49,12 +49,14 @@ bool bound(const FilmTransform& m, const Projection& projection, const Bounds& b
 DrawList make_draw_list(const Snapshot& snapshot, const Projection& projection, int32_t reach) {
     DrawList list;
     list.transforms.resize(snapshot.surfaces.size());
+    list.sets.resize(snapshot.surfaces.size());
     for (uint32_t slot = 0; slot < snapshot.surfaces.size(); ++slot) {
         const PlacedSurface& surface = snapshot.surfaces[slot];
         if (!surface.mesh || !(snapshot.rays->placement(slot)->mask & kSeenByCamera)) continue;
         list.transforms[slot] = projection.transform(surface.baked ? Affine{} : surface.world_from_object);
         const FilmTransform of_object = projection.transform(surface.world_from_object);
-        const std::vector<Cluster>& clusters = surface.surface->clusters().clusters;
+        list.sets[slot] = &surface.surface->clusters();
+        const std::vector<Cluster>& clusters = list.sets[slot]->clusters;
         const size_t begin = list.clusters.size();
         list.clusters.resize(begin + clusters.size());
         parallel_ranges(clusters.size(), 256, [&](size_t first, size_t end) {

@@ -19,6 +19,7 @@ struct DrawnCluster {
 struct DrawList {
     std::vector<DrawnCluster> clusters;
     std::vector<FilmTransform> transforms;  // of Snapshot::surfaces' positions, by slot
+    std::vector<const ClusterSet*> sets;    // by slot; null where nothing is to be drawn
 };
 
 // All clusters before the camera of surfaces that it sees, sorted from near to far, ties by slot and cluster. `reach`:

@@ -1,5 +1,7 @@
 #include "raster/rasterizer.h"
 
+#include <tbb/enumerable_thread_specific.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -39,10 +41,6 @@ struct Shading {
 
 // What a thread works with at a tile.
 struct Workspace : Shading {
-    Workspace(const PassList& passes, const TileWork& work)
-        : visibility(work.block_x0 * kBlockSide, work.block_y0 * kBlockSide, work.block_x1 - work.block_x0,
-                     work.block_y1 - work.block_y0),
-          sums(passes) {}
     VisibilityTile visibility;
     // Of all pixels, where surfaces have holes.
     std::vector<float> throughput;
@@ -68,6 +66,7 @@ struct Rasterizer {
     Illumination illumination;
     bool wants_shadow_pass;
     SceneColors colors;  // of vertices, where the method evaluates there
+    mutable tbb::enumerable_thread_specific<std::unique_ptr<Workspace>> workspaces{};
 
     void shade_all_vertices();
     void tile(const TileWork& work) const;
@@ -83,8 +82,9 @@ void Rasterizer::illuminate(uint32_t block_x, uint32_t block_y, uint32_t number,
                             const Points& points, Shading& w) const {
     add_ambient(points, w.coefficients, illumination.ambient, w.radiance);
     if (evaluation == Evaluation::ambient) return;
+    const bool one = light_samples == 1;
     for (int c = 0; c < 3; ++c) {
-        std::fill_n(w.lit[c], kBatch, 0.0f);
+        if (!one) std::fill_n(w.lit[c], kBatch, 0.0f);
         if (!wants_shadow_pass) continue;
         std::fill_n(w.arriving.unblocked[c], kBatch, 0.0f);
         std::fill_n(w.arriving.blocked[c], kBatch, 0.0f);
@@ -94,9 +94,10 @@ void Rasterizer::illuminate(uint32_t block_x, uint32_t block_y, uint32_t number,
         add_lights(
             snapshot, illumination, coherence,
             [&](uint32_t pair, float* u, float* v) { random_pair(block_x, block_y, job.settings.seed, s, pair, u, v); },
-            points, w.coefficients, w.lit, wants_shadow_pass ? &w.arriving : nullptr, w.lights, w.program, shadows);
+            points, w.coefficients, one ? w.radiance : w.lit, wants_shadow_pass ? &w.arriving : nullptr, w.lights,
+            w.program, shadows);
     const float share = 1 / static_cast<float>(light_samples);
-    for (int c = 0; c < 3; ++c)
+    for (int c = 0; c < 3 && !one; ++c)
         for (int i = 0; i < kBatch; ++i) w.radiance[c][i] += share * w.lit[c][i];
     job.counts->shadow_rays += shadows.rays;
     job.counts->shadow_time += shadows.nanoseconds;
@@ -105,9 +106,11 @@ void Rasterizer::illuminate(uint32_t block_x, uint32_t block_y, uint32_t number,
 // What the method shows at the points of a block, into w.radiance.
 void Rasterizer::shade(uint32_t block_x, uint32_t block_y, uint32_t sample, int layer, Workspace& w) const {
     const bool flat = evaluation == Evaluation::polygon;
-    if (flat) move_to_faces(snapshot, view.perspective ? &view.position : nullptr, w.points);
-    locate(snapshot, flat ? NormalChoice::flat : job.settings.normals, w.points);
+    locate_seen(snapshot, flat ? NormalChoice::flat : job.settings.normals,
+                {view.position, view.perspective ? nullptr : &w.origins, w.directions}, w.points);
     if (flat) {
+        move_to_faces(snapshot, view.perspective ? &view.position : nullptr, w.points);
+        locate(snapshot, NormalChoice::flat, w.points);
         take_face_normals(snapshot, w.points);
     } else if (snapshot.needs_footprint) {
         const float scale = std::max(0.125f, 1 / std::sqrt(static_cast<float>(pattern.size())));
@@ -137,13 +140,13 @@ bool Rasterizer::block(uint32_t place, const SampleOffset& offset, uint32_t samp
     }
     if (!any_missed && !any_seen) return false;
     make_directions(view, {x, y, 0.5f + offset.x / kSubpixels, 0.5f + offset.y / kSubpixels}, w.origins, w.directions);
-    w.sums.clear();
+    w.sums = job.film->block(x / kBlockSide, y / kBlockSide);
     if (any_missed) add_background(snapshot, w.directions, w.missed, throughput, job.settings.transparent, w.sums);
     bool any_left = false;
     uint8_t own_first[kBatch] = {};
     uint8_t* first = layered ? &w.first[size_t{place} * kBatch] : own_first;
     if (any_seen) {
-        find_points(snapshot, list, keys, w.origins, w.directions, w.points);
+        read_keys(list, keys, w.points);
         shade(x / kBlockSide, y / kBlockSide, sample, layer, w);
         add_surfaces(
             {snapshot, w.points, w.coefficients, w.radiance, throughput, wants_shadow_pass ? &w.arriving : nullptr},
@@ -159,7 +162,7 @@ bool Rasterizer::block(uint32_t place, const SampleOffset& offset, uint32_t samp
             any_left |= throughput[i] > 0;
         }
     if (sample == 0 && layer == 0 && !layered) finish_depth(first, w.sums);
-    job.film->add_block(x / kBlockSide, y / kBlockSide, w.sums, layer == 0, sample == 0);
+    job.film->add_samples(x / kBlockSide, y / kBlockSide, layer == 0);
     return any_left;
 }
 
@@ -189,15 +192,17 @@ void Rasterizer::sample(const TileWork& work, uint32_t number, Workspace& w) con
     }
     if (number > 0 || !snapshot.any_holes || !job.film->passes().has(kDepth)) return;
     for (uint32_t place = 0; place < blocks; ++place) {
-        w.sums.clear();
-        finish_depth(&w.first[size_t{place} * kBatch], w.sums);
-        job.film->add_block(work.block_x0 + place % w.visibility.blocks_across(),
-                            work.block_y0 + place / w.visibility.blocks_across(), w.sums, 0, true);
+        finish_depth(&w.first[size_t{place} * kBatch],
+                     job.film->block(work.block_x0 + place % w.visibility.blocks_across(),
+                                     work.block_y0 + place / w.visibility.blocks_across()));
     }
 }
 
 void Rasterizer::tile(const TileWork& work) const {
-    const auto w = std::make_unique<Workspace>(job.film->passes(), work);
+    std::unique_ptr<Workspace>& w = workspaces.local();
+    if (!w) w = std::make_unique<Workspace>();
+    w->visibility.place(work.block_x0 * kBlockSide, work.block_y0 * kBlockSide, work.block_x1 - work.block_x0,
+                        work.block_y1 - work.block_y0);
     for (uint32_t s = work.first_sample; s < work.end_sample; ++s) sample(work, s, *w);
 }
 
@@ -251,6 +256,7 @@ bool rasterize(RenderJob& job, const RenderEvents& events, Evaluation evaluation
         light_samples,
         illumination,
         (evaluation == Evaluation::polygon || evaluation == Evaluation::pixel) && job.film->passes().has(kShadow),
+        {},
         {}};
     Arena arena(job.settings.threads);
     arena.run([&] {

@@ -12,12 +12,11 @@ struct BlockSamples {
     float offset_x = 0.5f, offset_y = 0.5f;
 };
 
-// Directions through the samples, as primary rays have them, of length 1 along the camera's axis; and where they start.
+// Directions through the samples, as primary rays have them, of length 1 along the camera's axis; and where they start,
+// unless all start at the eye of a perspective camera.
 void make_directions(const View& view, const BlockSamples& samples, LaneVec3& origins, LaneVec3& directions);
 
-// What the keys say is seen, and where: slot, triangle, barycentrics by intersecting the ray with the triangle's plane,
-// held within the triangle, depth and the direction to the viewer.
-void find_points(const Snapshot& snapshot, const DrawList& list, const uint32_t* keys, const LaneVec3& origins,
-                 const LaneVec3& directions, Points& points);
+// Slot and triangle of what the keys say is seen.
+void read_keys(const DrawList& list, const uint32_t* keys, Points& points);
 
 }  // namespace trp

@@ -6,21 +6,26 @@
 
 namespace trp {
 
-VisibilityTile::VisibilityTile(uint32_t x0, uint32_t y0, uint32_t blocks_across, uint32_t blocks_up)
-    : x0_(x0),
-      y0_(y0),
-      blocks_across_(blocks_across),
-      blocks_up_(blocks_up),
-      keys_(hwy::AllocateAligned<uint32_t>(pixels())),
-      nearness_(hwy::AllocateAligned<float>(pixels())),
-      farthest_(size_t{blocks_across} * blocks_up),
-      touched_(farthest_.size()) {}
+void VisibilityTile::place(uint32_t x0, uint32_t y0, uint32_t blocks_across, uint32_t blocks_up) {
+    x0_ = x0;
+    y0_ = y0;
+    blocks_across_ = blocks_across;
+    blocks_up_ = blocks_up;
+    farthest_.resize(size_t{blocks_across} * blocks_up);
+    touched_.resize(farthest_.size());
+    if (pixels() <= room_) return;
+    room_ = pixels();
+    keys_ = hwy::AllocateAligned<uint32_t>(room_);
+    nearness_ = hwy::AllocateAligned<float>(room_);
+    last_keys_.reset();
+    last_nearness_.reset();
+}
 
 void VisibilityTile::begin(const Projection& projection, int32_t offset_x, int32_t offset_y, bool behind) {
     if (behind) {
         if (!last_keys_) {
-            last_keys_ = hwy::AllocateAligned<uint32_t>(pixels());
-            last_nearness_ = hwy::AllocateAligned<float>(pixels());
+            last_keys_ = hwy::AllocateAligned<uint32_t>(room_);
+            last_nearness_ = hwy::AllocateAligned<float>(room_);
         }
         last_keys_.swap(keys_);
         last_nearness_.swap(nearness_);
@@ -83,7 +88,7 @@ void VisibilityTile::draw(const Snapshot& snapshot, const Projection& projection
     const DrawnCluster& cluster = list.clusters[number];
     if (hidden(cluster)) return;
     const PlacedSurface& surface = snapshot.surfaces[cluster.slot];
-    draw_cluster({surface.positions, surface.vertices, surface.surface->clusters(), cluster.cluster,
+    draw_cluster({surface.positions, surface.vertices, *list.sets[cluster.slot], cluster.cluster,
                   list.transforms[cluster.slot], number * Cluster::kMostTriangles},
                  projection, buffers_);
     touch(cluster);

@@ -20,8 +20,8 @@ inline constexpr uint32_t kNothing = ~0u;  // the key of a pixel that sees nothi
 
 class VisibilityTile {
   public:
-    // Blocks of 16 × 16 pixels, whose lower left pixel is (x0, y0).
-    VisibilityTile(uint32_t x0, uint32_t y0, uint32_t blocks_across, uint32_t blocks_up);
+    // Makes it a tile of blocks of 16 × 16 pixels, whose lower left pixel is (x0, y0); its memory is used again.
+    void place(uint32_t x0, uint32_t y0, uint32_t blocks_across, uint32_t blocks_up);
 
     // Forgets all. Samples lie at the pixels' centres plus (offset_x, offset_y) / 256 pixels from now on. With
     // `behind`, only what lies behind the last picture is seen, where a pixel shows something: pixels that show
@@ -56,7 +56,8 @@ class VisibilityTile {
     void touch(const DrawnCluster& cluster);
     bool block_range(const DrawnCluster& cluster, uint32_t range[4]) const;
 
-    uint32_t x0_, y0_, blocks_across_, blocks_up_;
+    uint32_t x0_ = 0, y0_ = 0, blocks_across_ = 0, blocks_up_ = 0;
+    size_t room_ = 0;  // in pixels
     hwy::AlignedFreeUniquePtr<uint32_t[]> keys_, last_keys_;
     hwy::AlignedFreeUniquePtr<float[]> nearness_, last_nearness_;
     std::vector<float> farthest_;  // of each block: nothing farther can be seen in it; valid where not `touched_`

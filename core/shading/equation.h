@@ -15,6 +15,15 @@ enum class Specular { none, phong, blinn };
 enum class Side { seen, front, back };
 void locate(const Snapshot& snapshot, NormalChoice choice, Points& points, Side side = Side::seen);
 
+// As locate(), where only slot and triangle are known, and the ray through which each lane sees them: barycentrics are
+// those of the ray's point in the triangle's plane, held within the triangle; depth and to_viewer follow too.
+struct SeenFrom {
+    Vec3 eye;                    // where all rays start
+    const LaneVec3* origins;     // or where each does; null: at the eye
+    const LaneVec3& directions;  // of length 1 along the camera's axis
+};
+void locate_seen(const Snapshot& snapshot, NormalChoice choice, const SeenFrom& from, Points& points);
+
 // Coefficients of the lanes with a slot; material programs may replace shading normals.
 void evaluate(const Snapshot& snapshot, Points& points, Coefficients& coefficients, ProgramScratch& scratch);
 

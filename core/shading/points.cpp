@@ -17,6 +17,37 @@
 HWY_BEFORE_NAMESPACE();
 namespace trp::HWY_NAMESPACE {
 
+// Vertices of triangles in world space.
+template <class V>
+struct Corners {
+    Vector3<V> p0, p1, p2;
+    V greatest;  // a bound of all numbers that were added up for a coordinate
+};
+
+template <class D, class VI, class V = hn::Vec<D>>
+Corners<V> load_corners(D d, const PlacedSurface& surface, VI v0, VI v1, VI v2, bool single) {
+    Corners<V> c{read3_at(d, surface.positions, v0, single), read3_at(d, surface.positions, v1, single),
+                 read3_at(d, surface.positions, v2, single), hn::Zero(d)};
+    Vector3<V>* const points[3] = {&c.p0, &c.p1, &c.p2};
+    for (Vector3<V>* p : points) {
+        if (surface.baked) {
+            c.greatest = hn::Max(c.greatest, greatest_component(*p));
+            continue;
+        }
+        V out[3];
+        for (int r = 0; r < 3; ++r) {
+            const float* row = surface.world_from_object.rows[r];
+            const V x = hn::Mul(hn::Set(d, row[0]), p->x), y = hn::Mul(hn::Set(d, row[1]), p->y),
+                    z = hn::Mul(hn::Set(d, row[2]), p->z), w = hn::Set(d, row[3]);
+            out[r] = hn::Add(hn::Add(x, y), hn::Add(z, w));
+            const V terms = hn::Add(hn::Add(hn::Abs(x), hn::Abs(y)), hn::Add(hn::Abs(z), hn::Abs(w)));
+            c.greatest = hn::Max(c.greatest, terms);
+        }
+        *p = {out[0], out[1], out[2]};
+    }
+    return c;
+}
+
 constexpr NormalLayer kFlatNormals;
 
 // The cofactor matrix of the surface's transform times n: turns normals, up to length.
@@ -37,7 +68,28 @@ Vector3<V> unit(D d, const Vector3<V>& v, V side) {
     return scaled * hn::Div(side, hn::Sqrt(hn::Max(dot3(scaled, scaled), tiny)));
 }
 
-void locate_lanes(const Snapshot& snapshot, NormalChoice choice, Side seen_side, Points& points) {
+// Where the ray meets the triangle's plane (Möller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection",
+// 1997).
+template <class V>
+struct Meeting {
+    V b1, b2, depth;
+};
+
+template <class D, class V>
+Meeting<V> meet(D d, const Vector3<V>& origin, const Vector3<V>& direction, const Vector3<V>& p0, const Vector3<V>& e1,
+                const Vector3<V>& e2) {
+    const V zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+    const Vector3<V> from = origin - p0, p = cross3(direction, e2), q = cross3(from, e1);
+    const V determinant = dot3(e1, p);
+    const auto flat = hn::Eq(determinant, zero);
+    const V inverse = hn::IfThenZeroElse(flat, hn::Div(one, hn::IfThenElse(flat, one, determinant)));
+    const V b1 = hn::Min(hn::Max(hn::Mul(dot3(from, p), inverse), zero), one);
+    const V b2 = hn::Min(hn::Max(hn::Mul(dot3(direction, q), inverse), zero), hn::Sub(one, b1));
+    return {b1, b2, hn::Mul(dot3(e2, q), inverse)};
+}
+
+// `from`: null where the lanes' barycentrics are known.
+void locate_lanes(const Snapshot& snapshot, NormalChoice choice, Side seen_side, const SeenFrom* from, Points& points) {
     const hn::ScalableTag<float> d;
     const hn::RebindToSigned<decltype(d)> di;
     using V = hn::Vec<decltype(d)>;
@@ -49,7 +101,16 @@ void locate_lanes(const Snapshot& snapshot, NormalChoice choice, Side seen_side,
     for (int i = 0; i < kBatch; i += lanes) {
         const VI slots = load(points.slot + i), triangles = load(points.triangle + i);
         const auto hit = hn::Ne(slots, hn::Set(di, static_cast<int32_t>(kNoSlot)));
-        const V b1 = hn::Load(d, points.b1 + i), b2 = hn::Load(d, points.b2 + i);
+        V b1 = zero, b2 = zero, depth = zero;
+        Vector3<V> origin{zero, zero, zero}, direction = origin;
+        if (from) {
+            origin = from->origins ? load3(d, *from->origins, i) : broadcast(d, from->eye);
+            direction = load3(d, from->directions, i);
+            const V scale = hn::Div(hn::Neg(one), hn::Sqrt(dot3(direction, direction)));
+            store3(d, direction * scale, points.to_viewer, i);
+        } else {
+            b1 = hn::Load(d, points.b1 + i), b2 = hn::Load(d, points.b2 + i);
+        }
         Vector3<V> position{zero, zero, zero}, edge1 = position, edge2 = position, geometric{zero, zero, one},
                                                normal = geometric;
         V greatest = zero;
@@ -57,11 +118,17 @@ void locate_lanes(const Snapshot& snapshot, NormalChoice choice, Side seen_side,
 
         for_each_surface(di, snapshot, slots, hit, [&](const PlacedSurface& surface, auto here) {
             const auto mask = hn::RebindMask(d, here);
-            const VI triangle = hn::IfThenElseZero(here, triangles), first = hn::Mul(triangle, hn::Set(di, 3));
-            const VI v0 = triangle_vertex(di, surface, first, 0), v1 = triangle_vertex(di, surface, first, 1),
-                     v2 = triangle_vertex(di, surface, first, 2);
-            const Corners<V> c = load_corners(d, surface, v0, v1, v2);
+            const SeenTriangles<VI> seen = triangles_of(di, triangles, here, points.triangle + i);
+            const VI v0 = triangle_vertex(di, surface, seen, 0), v1 = triangle_vertex(di, surface, seen, 1),
+                     v2 = triangle_vertex(di, surface, seen, 2);
+            const Corners<V> c = load_corners(d, surface, v0, v1, v2, seen.single);
             const Vector3<V> e1 = c.p1 - c.p0, e2 = c.p2 - c.p0;
+            if (from) {
+                const Meeting<V> at = meet(d, origin, direction, c.p0, e1, e2);
+                b1 = hn::IfThenElse(mask, at.b1, b1);
+                b2 = hn::IfThenElse(mask, at.b2, b2);
+                depth = hn::IfThenElse(mask, at.depth, depth);
+            }
             position = select3(mask, add_scaled(add_scaled(c.p0, e1, b1), e2, b2), position);
             edge1 = select3(mask, e1, edge1);
             edge2 = select3(mask, e2, edge2);
@@ -84,7 +151,8 @@ void locate_lanes(const Snapshot& snapshot, NormalChoice choice, Side seen_side,
             if (layer.domain != NormalLayer::Domain::flat) {
                 const bool by_vertex = layer.domain == NormalLayer::Domain::vertex;
                 auto at = [&](int k, VI vertex) {
-                    return gather3(d, layer.values, by_vertex ? vertex : triangle_corner(di, surface, first, k));
+                    const VI element = by_vertex ? vertex : triangle_corner(di, surface, seen, k);
+                    return read3_at(d, layer.values, element, seen.single);
                 };
                 const Vector3<V> n0 = at(0, v0), n1 = at(1, v1), n2 = at(2, v2);
                 Vector3<V> n = add_scaled(add_scaled(n0, n1 - n0, b1), n2 - n0, b2);
@@ -107,6 +175,12 @@ void locate_lanes(const Snapshot& snapshot, NormalChoice choice, Side seen_side,
             }
         });
 
+        if (from) {
+            hn::Store(b1, d, points.b1 + i);
+            hn::Store(b2, d, points.b2 + i);
+            hn::Store(depth, d, points.depth + i);
+            hn::Store(zero, d, points.time + i);
+        }
         const V facing = seen_side == Side::seen    ? dot3(geometric, load3(d, points.to_viewer, i))
                          : seen_side == Side::front ? one
                                                     : hn::Neg(one);
@@ -134,7 +208,11 @@ namespace trp {
 HWY_EXPORT(locate_lanes);
 
 void locate(const Snapshot& snapshot, NormalChoice choice, Points& points, Side side) {
-    HWY_DYNAMIC_DISPATCH(locate_lanes)(snapshot, choice, side, points);
+    HWY_DYNAMIC_DISPATCH(locate_lanes)(snapshot, choice, side, nullptr, points);
+}
+
+void locate_seen(const Snapshot& snapshot, NormalChoice choice, const SeenFrom& from, Points& points) {
+    HWY_DYNAMIC_DISPATCH(locate_lanes)(snapshot, choice, Side::seen, &from, points);
 }
 
 }  // namespace trp

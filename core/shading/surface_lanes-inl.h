@@ -28,54 +28,47 @@ void for_each_surface(DI di, const Snapshot& snapshot, VI slots, M left, Visit&&
     }
 }
 
+// The triangles that lanes see of one surface. Lanes of other surfaces are given one of its triangles too, so that all
+// can be read; and where all see one triangle, which large ones make common, numbers are read once instead of gathered.
+template <class VI>
+struct SeenTriangles {
+    VI first;     // three times the triangle
+    bool single;  // it is one for all lanes
+};
+
+template <class DI, class VI, class M>
+SeenTriangles<VI> triangles_of(DI di, VI triangles, M here, const uint32_t* all) {
+    const VI one = hn::Set(di, static_cast<int32_t>(all[hn::FindFirstTrue(di, here)]));
+    const VI triangle = hn::IfThenElse(here, triangles, one);
+    return {hn::Mul(triangle, hn::Set(di, 3)), hn::AllTrue(di, hn::Eq(triangle, one))};
+}
+
+template <class D, class T, class VI>
+hn::Vec<D> read_at(D d, const T* values, VI index, bool single) {
+    using Lane = hn::TFromD<D>;
+    const auto* lanes = reinterpret_cast<const Lane*>(values);
+    if (single) return hn::Set(d, lanes[hn::GetLane(index)]);
+    return hn::GatherIndex(d, lanes, index);
+}
+
 template <class D, class VI, class V = hn::Vec<D>>
-Vector3<V> gather3(D d, const Vec3* values, VI index) {
+Vector3<V> read3_at(D d, const Vec3* values, VI index, bool single) {
+    if (single) return broadcast(d, values[hn::GetLane(index)]);
     const hn::RebindToSigned<D> di;
     const VI at = hn::Mul(index, hn::Set(di, 3));
     const float* first = &values[0].x;
     return {hn::GatherIndex(d, first, at), hn::GatherIndex(d, first + 1, at), hn::GatherIndex(d, first + 2, at)};
 }
 
-// The k-th vertex, and the k-th corner, of triangles; `first` is three times the triangle.
+// The k-th vertex, and the k-th corner, of triangles.
 template <class DI, class VI>
-VI triangle_vertex(DI di, const PlacedSurface& surface, VI first, int k) {
-    return hn::GatherIndex(di, reinterpret_cast<const int32_t*>(surface.vertices) + k, first);
+VI triangle_vertex(DI di, const PlacedSurface& surface, const SeenTriangles<VI>& seen, int k) {
+    return read_at(di, surface.vertices + k, seen.first, seen.single);
 }
 template <class DI, class VI>
-VI triangle_corner(DI di, const PlacedSurface& surface, VI first, int k) {
-    if (!surface.corners) return hn::Add(first, hn::Set(di, k));
-    return hn::GatherIndex(di, reinterpret_cast<const int32_t*>(surface.corners) + k, first);
-}
-
-// Vertices of triangles in world space.
-template <class V>
-struct Corners {
-    Vector3<V> p0, p1, p2;
-    V greatest;  // a bound of all numbers that were added up for a coordinate
-};
-
-template <class D, class VI, class V = hn::Vec<D>>
-Corners<V> load_corners(D d, const PlacedSurface& surface, VI v0, VI v1, VI v2) {
-    Corners<V> c{gather3(d, surface.positions, v0), gather3(d, surface.positions, v1),
-                 gather3(d, surface.positions, v2), hn::Zero(d)};
-    Vector3<V>* const points[3] = {&c.p0, &c.p1, &c.p2};
-    for (Vector3<V>* p : points) {
-        if (surface.baked) {
-            c.greatest = hn::Max(c.greatest, greatest_component(*p));
-            continue;
-        }
-        V out[3];
-        for (int r = 0; r < 3; ++r) {
-            const float* row = surface.world_from_object.rows[r];
-            const V x = hn::Mul(hn::Set(d, row[0]), p->x), y = hn::Mul(hn::Set(d, row[1]), p->y),
-                    z = hn::Mul(hn::Set(d, row[2]), p->z), w = hn::Set(d, row[3]);
-            out[r] = hn::Add(hn::Add(x, y), hn::Add(z, w));
-            const V terms = hn::Add(hn::Add(hn::Abs(x), hn::Abs(y)), hn::Add(hn::Abs(z), hn::Abs(w)));
-            c.greatest = hn::Max(c.greatest, terms);
-        }
-        *p = {out[0], out[1], out[2]};
-    }
-    return c;
+VI triangle_corner(DI di, const PlacedSurface& surface, const SeenTriangles<VI>& seen, int k) {
+    if (!surface.corners) return hn::Add(seen.first, hn::Set(di, k));
+    return read_at(di, surface.corners + k, seen.first, seen.single);
 }
 
 }  // namespace trp::HWY_NAMESPACE

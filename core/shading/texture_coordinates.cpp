@@ -24,6 +24,8 @@ void read_uv_lanes(const Snapshot& snapshot, const std::string& uv_set, const Po
             return hn::GatherIndex(di, reinterpret_cast<const int32_t*>(values), lane);
         };
         const VI slots = pick_integers(points.slot), triangles = pick_integers(points.triangle);
+        alignas(64) uint32_t all[HWY_MAX_BYTES / sizeof(uint32_t)];
+        hn::Store(triangles, di, reinterpret_cast<int32_t*>(all));
         // At the first vertex, and from there to the second and third.
         V u0 = zero, v0 = zero, u1 = zero, v1 = zero, u2 = zero, v2 = zero;
         const auto left = hn::FirstN(di, static_cast<size_t>(count - j));
@@ -31,12 +33,12 @@ void read_uv_lanes(const Snapshot& snapshot, const std::string& uv_set, const Po
             const Attribute* layer = find_layer(surface.mesh->uv_sets, uv_set);
             if (!layer) return;
             const auto mask = hn::RebindMask(d, here);
-            const VI first = hn::Mul(hn::IfThenElseZero(here, triangles), hn::Set(di, 3));
+            const SeenTriangles<VI> seen = triangles_of(di, triangles, here, all);
             auto value = [&](int k, int c) {
-                const VI element = layer->domain == TRP_DOMAIN_CORNER ? triangle_corner(di, surface, first, k)
-                                                                      : triangle_vertex(di, surface, first, k);
+                const VI element = layer->domain == TRP_DOMAIN_CORNER ? triangle_corner(di, surface, seen, k)
+                                                                      : triangle_vertex(di, surface, seen, k);
                 const VI at = hn::Mul(element, hn::Set(di, static_cast<int32_t>(layer->components)));
-                return hn::GatherIndex(d, layer->values.data() + c, at);
+                return read_at(d, layer->values.data() + c, at, seen.single);
             };
             const V u = value(0, 0), v = value(0, 1);
             u0 = hn::IfThenElse(mask, u, u0), v0 = hn::IfThenElse(mask, v, v0);

@@ -23,7 +23,7 @@ uint64_t nanoseconds(Clock::time_point from, Clock::time_point to) {
 
 // What a thread works with; large, so made once for a tile.
 struct Workspace {
-    explicit Workspace(const PassList& passes) : sums(passes) { prepare(rays, kSeenByCamera); }
+    Workspace() { prepare(rays, kSeenByCamera); }
     BlockRays rays;
     Points points;
     Coefficients coefficients;
@@ -155,17 +155,17 @@ void Caster::layers(uint32_t block_x, uint32_t block_y, uint32_t sample, Workspa
 }
 
 void Caster::block(uint32_t block_x, uint32_t block_y, const TileWork& work, Workspace& w) const {
-    w.sums.clear();
+    w.sums = job.film->block(block_x, block_y);
     prepare_block(maker, block_x, block_y, w.rays);
     for (uint32_t sample = work.first_sample; sample < work.end_sample; ++sample) {
         if (*job.cancelled) return;
         layers(block_x, block_y, sample, w);
+        job.film->add_samples(block_x, block_y, 1);
     }
-    job.film->add_block(block_x, block_y, w.sums, work.end_sample - work.first_sample, work.first_sample == 0);
 }
 
 void Caster::tile(const TileWork& work) const {
-    const auto w = std::make_unique<Workspace>(job.film->passes());
+    const auto w = std::make_unique<Workspace>();
     for (uint32_t y = work.block_y0; y < work.block_y1; ++y)
         for (uint32_t x = work.block_x0; x < work.block_x1; ++x) block(x, y, work, *w);
 }
