@@ -247,16 +247,9 @@ TEST(Raster, ClosedMeshesHaveNoHoles) {
 TEST(Raster, HolesShowWhatLiesBehindThem) {
     Scene scene;
     scene.world({0, 0, 1});
-    auto veil = [&](float r, float alpha) {
-        return scene.material([&](TrpMaterialDesc& d) {
-            d.diffuse = {{0, 0, 0}, TRP_NO_NODE};
-            d.emission = {{r, 0, 0}, TRP_NO_NODE};
-            d.alpha = {{alpha, 0, 0}, TRP_NO_NODE};
-        });
-    };
-    scene.object(floor_square(1, 1), veil(1, 0.5f));
-    scene.object(floor_square(1, 2), veil(2, 0.25f));
-    scene.object(floor_square(1, 2), veil(4, 0.5f));  // in the same plane
+    scene.object(floor_square(1, 1), scene.veil(1, 0.5f));
+    scene.object(floor_square(1, 2), scene.veil(2, 0.25f));
+    scene.object(floor_square(1, 2), scene.veil(4, 0.5f));  // in the same plane
     scene.camera_above(3);
     scene.commit();
     const Settings settings = {{"raster.samples", "1"}};
@@ -288,6 +281,36 @@ TEST(Raster, EdgeSamplesCoverAsMuchAsTheShape) {
         const Settings settings = {{"raster.samples", samples}, {"film.filter", "box"}, {"film.filter_width", "1"}};
         const Image image = Render(scene, 32, 32, settings, {}, "visible_surface").run().read();
         EXPECT_NEAR(mean(image) * 32 * 32, 10.5 * 10.5, 10.5 * 4 / std::stod(samples)) << samples;
+    }
+}
+
+TEST(Raster, DrawsAnyGeometry) {
+    // Behind the eye, through its plane and in it, slivers, points, far away, and very many in one pixel.
+    const std::vector<Vec> corners = {
+        {0, 0, 0},      {1, 0, 0},           {0, 1, 0},          {0, 0, 3},      {1e-20f, 0, -1}, {0, 1e-20f, -1},
+        {1e17f, 0, -1}, {0, -1e17f, -1},     {-1e17f, 1e17f, 5}, {0, 0, -0.05f}, {1, 1, -0.05f},  {-1, 1, -0.05f},
+        {5, 5, -5},     {5.0000005f, 5, -5}, {-5, -5, -5},       {0, 0, 1e17f},  {0, 0, -1e17f},  {3, 2, -1e-30f}};
+    std::mt19937 random(11);
+    MeshData mesh;
+    for (const Vec& p : corners) mesh.positions.insert(mesh.positions.end(), p.begin(), p.end());
+    for (int t = 0; t < 3000; ++t)
+        for (int k = 0; k < 3; ++k) mesh.corners.push_back(static_cast<uint32_t>(random() % corners.size()));
+    const uint32_t first = static_cast<uint32_t>(corners.size());
+    for (uint32_t t = 0; t < 100000; ++t) {
+        const float x = 1e-5f * static_cast<float>(t % 100), y = 1e-5f * static_cast<float>(t / 100 % 100);
+        mesh.positions.insert(mesh.positions.end(), {x, y, -2, x + 1e-5f, y, -2, x, y + 1e-5f, -2});
+        mesh.corners.insert(mesh.corners.end(), {first + 3 * t, first + 3 * t + 1, first + 3 * t + 2});
+    }
+    for (const int32_t type : {TRP_CAMERA_PERSPECTIVE, TRP_CAMERA_ORTHOGRAPHIC}) {
+        Scene scene;
+        scene.object(mesh, scene.veil(0.1f, 0.5f));
+        scene.light(TRP_LIGHT_POINT, {1, 1, 1}, kIdentity);
+        look_down(scene, type);
+        scene.commit();
+        for (const char* method : {"visible_surface", "flat", "gouraud", "phong"}) {
+            Render render(scene, 50, 40, {{"raster.samples", "3"}}, {"Normal", "Position", "UV"}, method);
+            for (const float value : render.run().read().values) ASSERT_TRUE(std::isfinite(value)) << method;
+        }
     }
 }
 

@@ -106,15 +106,8 @@ TEST(Normals, MirroredInstancesFaceOutwards) {
 TEST(Alpha, PicturesAreLayered) {
     Scene scene;
     scene.world({0, 0, 1});
-    auto veil = [&](float r, float alpha) {
-        return scene.material([&](TrpMaterialDesc& d) {
-            d.diffuse = {{0, 0, 0}, TRP_NO_NODE};
-            d.emission = {{r, 0, 0}, TRP_NO_NODE};
-            d.alpha = {{alpha, 0, 0}, TRP_NO_NODE};
-        });
-    };
-    scene.object(floor_square(1, 1), veil(1, 0.5f));
-    scene.object(floor_square(1, 2), veil(2, 0.25f));
+    scene.object(floor_square(1, 1), scene.veil(1, 0.5f));
+    scene.object(floor_square(1, 2), scene.veil(2, 0.25f));
     scene.camera_above(1);
     Image image = render(scene, 2, 2, {{"samples", "1"}});
     EXPECT_NEAR(image.at(0, 0)[0], 0.25 * 2 + 0.75 * 0.5 * 1, 1e-5);

@@ -166,6 +166,14 @@ class Scene {
     uint32_t diffuse(float r, float g, float b) {
         return material([&](TrpMaterialDesc& d) { d.diffuse = {{r, g, b}, TRP_NO_NODE}; });
     }
+    // Red light that lets through what its alpha leaves.
+    uint32_t veil(float red, float alpha) {
+        return material([&](TrpMaterialDesc& d) {
+            d.diffuse = {{0, 0, 0}, TRP_NO_NODE};
+            d.emission = {{red, 0, 0}, TRP_NO_NODE};
+            d.alpha = {{alpha, 0, 0}, TRP_NO_NODE};
+        });
+    }
     // A mesh shown once, of one material.
     uint32_t object(MeshData data, uint32_t material = TRP_NO_ID, const Transform& transform = kIdentity) {
         if (material) data.materials = {material};
