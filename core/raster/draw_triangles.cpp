@@ -30,23 +30,38 @@ struct Setup {
     uint32_t key;
 };
 
+// What a triangle's values add from a packet's first pixel to each of its lanes, the same in every packet.
+struct PacketSteps {
+    alignas(64) int32_t edge[3][16];
+    alignas(64) float nearness[16];
+};
+
+HWY_INLINE void make_steps(const Setup& t, PacketSteps& steps) {
+    const hn::CappedTag<float, 16> d;
+    const hn::RebindToSigned<decltype(d)> di;
+    for (size_t lane = 0; lane < 16; lane += hn::Lanes(d)) {
+        const auto index = hn::Iota(di, static_cast<int32_t>(lane));
+        const auto i = hn::And(index, hn::Set(di, 3)), j = hn::ShiftRight<2>(index);
+        for (int k = 0; k < 3; ++k)
+            hn::Store(hn::Add(hn::Mul(hn::Set(di, t.a[k]), i), hn::Mul(hn::Set(di, t.b[k]), j)), di,
+                      steps.edge[k] + lane);
+        hn::Store(hn::MulAdd(hn::Set(d, t.dx), hn::ConvertTo(d, i), hn::Mul(hn::Set(d, t.dy), hn::ConvertTo(d, j))), d,
+                  steps.nearness + lane);
+    }
+}
+
 // Draws 16 pixels, whose lower left one is that of the setup's values, into the packet's lanes.
-HWY_INLINE void draw_packet(const Setup& t, const VisibilityTile::Buffers& tile, size_t packet) {
+HWY_INLINE void draw_packet(const Setup& t, const PacketSteps& steps, const VisibilityTile::Buffers& tile,
+                            size_t packet) {
     const hn::CappedTag<float, 16> d;
     const hn::RebindToSigned<decltype(d)> di;
     const hn::RebindToUnsigned<decltype(d)> du;
     for (size_t lane = 0; lane < 16; lane += hn::Lanes(d)) {
-        const auto index = hn::Iota(di, static_cast<int32_t>(lane));
-        const auto i = hn::And(index, hn::Set(di, 3)), j = hn::ShiftRight<2>(index);
-        auto edge = [&](int k) {
-            return hn::Add(hn::Set(di, t.edge[k]),
-                           hn::Add(hn::Mul(hn::Set(di, t.a[k]), i), hn::Mul(hn::Set(di, t.b[k]), j)));
-        };
+        auto edge = [&](int k) { return hn::Add(hn::Set(di, t.edge[k]), hn::Load(di, steps.edge[k] + lane)); };
         const auto outside = hn::Or(hn::Or(edge(0), edge(1)), edge(2));  // by its sign
         auto covered = hn::RebindMask(d, hn::Gt(outside, hn::Set(di, -1)));
         if (hn::AllFalse(d, covered)) continue;
-        auto near = hn::MulAdd(hn::Set(d, t.dx), hn::ConvertTo(d, i),
-                               hn::MulAdd(hn::Set(d, t.dy), hn::ConvertTo(d, j), hn::Set(d, t.nearness)));
+        auto near = hn::Add(hn::Set(d, t.nearness), hn::Load(d, steps.nearness + lane));
         near = hn::Max(hn::Min(near, hn::Set(d, t.most)), hn::Set(d, t.least));
         const size_t at = packet + lane;
         covered = hn::And(covered, hn::Gt(near, hn::Load(d, tile.nearness + at)));
@@ -74,11 +89,13 @@ void draw_small(const Setup& at_corner, int32_t i, int32_t j, int32_t i1, int32_
     const int32_t begin_i = std::max(i, 0) & ~3, end_i = std::min(i1, static_cast<int32_t>(tile.width) - 1);
     const int32_t begin_j = std::max(j, 0) & ~3, end_j = std::min(j1, static_cast<int32_t>(tile.height) - 1);
     Setup t = at_corner;
+    PacketSteps steps;
+    make_steps(t, steps);
     for (int32_t y = begin_j; y <= end_j; y += 4)
         for (int32_t x = begin_i; x <= end_i; x += 4) {
             for (int k = 0; k < 3; ++k) t.edge[k] = at_corner.edge[k] + t.a[k] * (x - i) + t.b[k] * (y - j);
             t.nearness = at_corner.nearness + t.dx * static_cast<float>(x - i) + t.dy * static_cast<float>(y - j);
-            draw_packet(t, tile, packet_at(tile, x, y));
+            draw_packet(t, steps, tile, packet_at(tile, x, y));
         }
 }
 
@@ -113,6 +130,8 @@ void draw_large(GridPoint p0, GridPoint p1, GridPoint p2, const std::array<doubl
     t.least = least;
     t.most = most;
     t.key = key;
+    PacketSteps steps;
+    make_steps(t, steps);
     constexpr int64_t kFar = int64_t{1} << 30;  // no sum over a packet comes back from there
     // Block by block, those that lie outside of an edge left out.
     for (int64_t block_j = begin_j & ~15; block_j <= end_j; block_j += 16)
@@ -130,7 +149,7 @@ void draw_large(GridPoint p0, GridPoint p1, GridPoint p2, const std::array<doubl
                             static_cast<int32_t>(std::clamp(constant[k] + t.a[k] * i + t.b[k] * j, -kFar, kFar));
                     t.nearness = static_cast<float>(plane[0] + plane[1] * static_cast<double>(i) +
                                                     plane[2] * static_cast<double>(j));
-                    draw_packet(t, tile, packet_at(tile, static_cast<int32_t>(i), static_cast<int32_t>(j)));
+                    draw_packet(t, steps, tile, packet_at(tile, static_cast<int32_t>(i), static_cast<int32_t>(j)));
                 }
         }
 }

@@ -139,7 +139,9 @@ bool Rasterizer::block(uint32_t place, const SampleOffset& offset, uint32_t samp
         any_seen |= keys[i] != kNothing;
     }
     if (!any_missed && !any_seen) return false;
-    make_directions(view, {x, y, 0.5f + offset.x / kSubpixels, 0.5f + offset.y / kSubpixels}, w.origins, w.directions);
+    if (any_seen || snapshot.world.texture != TRP_NO_ID)
+        make_directions(view, {x, y, 0.5f + offset.x / kSubpixels, 0.5f + offset.y / kSubpixels}, w.origins,
+                        w.directions);
     w.sums = job.film->block(x / kBlockSide, y / kBlockSide);
     if (any_missed) add_background(snapshot, w.directions, w.missed, throughput, job.settings.transparent, w.sums);
     bool any_left = false;
