@@ -56,9 +56,10 @@ Film::Film(const Window& window, const PassList& passes) : window_(window), pass
              passes.channels());
 #ifdef __linux__
     // Large pages, where the system has them, make the first touch of a film much cheaper.
-    constexpr uintptr_t kPage = 4096;
-    const auto begin = (reinterpret_cast<uintptr_t>(values_.get()) + kPage - 1) / kPage * kPage;
-    if (bytes > (size_t{4} << 20)) madvise(reinterpret_cast<void*>(begin), bytes - kPage, MADV_HUGEPAGE);
+    constexpr size_t kPage = 4096;
+    char* const first = reinterpret_cast<char*>(values_.get());
+    const size_t skipped = (kPage - reinterpret_cast<uintptr_t>(first) % kPage) % kPage;
+    if (bytes > (size_t{4} << 20)) madvise(first + skipped, bytes - skipped, MADV_HUGEPAGE);
 #endif
 }
 

@@ -49,7 +49,7 @@ void read_keys(const DrawList& list, const uint32_t* keys, Points& points) {
         points.slot[i] = kNoSlot;
         points.triangle[i] = 0;
         if (keys[i] == kNothing) continue;
-        if (keys[i] / Cluster::kMostTriangles != number) {
+        if (!triangles || keys[i] / Cluster::kMostTriangles != number) {
             number = keys[i] / Cluster::kMostTriangles;
             const DrawnCluster& drawn = list.clusters[number];
             const ClusterSet& set = *list.sets[drawn.slot];
