@@ -83,3 +83,20 @@ def test_settings_have_their_defaults(scene):
         else:
             assert told == setting.default, setting.name
     assert settings.changed(scene) == {}
+
+
+@pytest.mark.library
+def test_switch_shows_the_methods_default(scene):
+    """Until it is set, and then what was set, whatever the method."""
+    group = scene.triptych
+    shown = {}
+    for method in ("ray_casting", "phong"):
+        group.method = method
+        shown[method] = group.shadows
+    assert shown == {"ray_casting": True, "phong": False}
+    assert "shadows" not in settings.changed(scene)
+    group.shadows = True
+    assert group.shadows and settings.changed(scene)["shadows"] == "on"
+    group.method = "ray_casting"
+    group.shadows = False
+    assert not group.shadows and settings.changed(scene)["shadows"] == "off"
