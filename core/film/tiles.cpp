@@ -60,11 +60,13 @@ struct Mailbox {
 
 }  // namespace
 
-bool run_tiles(RenderJob& job, const RenderEvents& events, const std::function<void(const TileWork&)>& work) {
+bool run_tiles(RenderJob& job, const RenderEvents& events, const std::function<void(const TileWork&)>& work,
+               const std::function<void()>& prepare) {
     const std::vector<Tile> tiles = make_tiles(job.film->window(), job.settings.tile_size);
     const uint32_t samples = job.settings.samples, passes = (samples + kPassSamples - 1) / kPassSamples;
     std::atomic<bool>& cancelled = *job.cancelled;
     Mailbox mailbox;
+    std::atomic<bool> prepared{false};
 
     // The driver takes a thread's place in the arena; the caller waits for the mail. A pass begins when the caller has
     // read all tiles of the one before, as the tiles are written again.
@@ -72,6 +74,8 @@ bool run_tiles(RenderJob& job, const RenderEvents& events, const std::function<v
         try {
             Arena arena(job.settings.threads);
             arena.run([&] {
+                if (prepare) prepare();
+                prepared = true;
                 for (uint32_t pass = 0; pass < passes && !cancelled; ++pass) {
                     std::atomic<size_t> next{0};
                     const unsigned workers = thread_count(job.settings.threads);
@@ -126,7 +130,7 @@ bool run_tiles(RenderJob& job, const RenderEvents& events, const std::function<v
                 progress.seconds_left = finished ? progress.seconds * (total / static_cast<double>(finished) - 1) : -1;
                 progress.pass = static_cast<uint32_t>(std::min<uint64_t>(finished / tiles.size(), passes - 1));
                 progress.pass_count = passes;
-                progress.stage = "Rendering";
+                progress.stage = prepared ? "Rendering" : "Preparing";
                 if (!events.progress(progress)) cancelled = true;
             }
             lock.lock();

@@ -38,8 +38,10 @@ struct TileWork {
     uint32_t first_sample, end_sample;
 };
 
-// Calls work(tile) for every tile and pass of the job, from the threads of an arena of its own. `work` returns early
-// when the job is cancelled. Returns false where it was. An exception of `work` stops all and is thrown here.
-bool run_tiles(RenderJob& job, const RenderEvents& events, const std::function<void(const TileWork&)>& work);
+// Calls work(tile) for every tile and pass of the job, from the threads of an arena of its own, after `prepare` has run
+// in that arena. Both return early when the job is cancelled. Returns false where it was. An exception of theirs stops
+// all and is thrown here.
+bool run_tiles(RenderJob& job, const RenderEvents& events, const std::function<void(const TileWork&)>& work,
+               const std::function<void()>& prepare = {});
 
 }  // namespace trp

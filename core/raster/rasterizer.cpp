@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cmath>
 
-#include "base/parallel.h"
 #include "film/pixel_random.h"
 #include "film/surface_passes.h"
 #include "raster/face_points.h"
@@ -90,7 +89,7 @@ void Rasterizer::illuminate(uint32_t block_x, uint32_t block_y, uint32_t number,
         std::fill_n(w.arriving.blocked[c], kBatch, 0.0f);
     }
     ShadowCounts shadows;
-    for (uint32_t s = number; s < number + light_samples; ++s)
+    for (uint32_t s = number; s < number + light_samples && !*job.cancelled; ++s)
         add_lights(
             snapshot, illumination, coherence,
             [&](uint32_t pair, float* u, float* v) { random_pair(block_x, block_y, job.settings.seed, s, pair, u, v); },
@@ -260,16 +259,16 @@ bool rasterize(RenderJob& job, const RenderEvents& events, Evaluation evaluation
         (evaluation == Evaluation::polygon || evaluation == Evaluation::pixel) && job.film->passes().has(kShadow),
         {},
         {}};
-    Arena arena(job.settings.threads);
-    arena.run([&] {
-        rasterizer.list = make_draw_list(snapshot, projection, reach_of(pattern));
-        rasterizer.tiles = TileLists(rasterizer.list, window, tiled.settings.tile_size);
-        if (evaluation == Evaluation::vertex) rasterizer.shade_all_vertices();
-    });
     if (events.log)
-        events.log(fmt::format("{} x {} pixels, {} samples, {} lights, {} groups of triangles", window.w, window.h,
-                               tiled.settings.samples, snapshot.lights.size(), rasterizer.list.clusters.size()));
-    return run_tiles(tiled, events, [&](const TileWork& work) { rasterizer.tile(work); });
+        events.log(fmt::format("{} x {} pixels, {} samples, {} lights", window.w, window.h, tiled.settings.samples,
+                               snapshot.lights.size()));
+    return run_tiles(
+        tiled, events, [&](const TileWork& work) { rasterizer.tile(work); },
+        [&] {
+            rasterizer.list = make_draw_list(snapshot, projection, reach_of(pattern));
+            rasterizer.tiles = TileLists(rasterizer.list, window, tiled.settings.tile_size);
+            if (evaluation == Evaluation::vertex) rasterizer.shade_all_vertices();
+        });
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // The rasterizer against rays: the same surfaces, depths and radiance through the centres of pixels.
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <random>
 
@@ -312,6 +313,22 @@ TEST(Raster, DrawsAnyGeometry) {
             for (const float value : render.run().read().values) ASSERT_TRUE(std::isfinite(value)) << method;
         }
     }
+}
+
+TEST(Raster, ProgressCancels) {
+    // Gouraud shading takes long before its first tile: 10^5 vertices with 4000 rays each.
+    Scene scene;
+    scene.object(sphere({0, 0, 0}, 1, 220));
+    scene.light(TRP_LIGHT_AREA, {3, 3, 3}, look_at({2, 3, 3}, {0, 0, 0}));
+    scene.camera(look_at({2, -4, 2.5f}, {0, 0, 0}));
+    scene.commit();
+    Render render(scene, 64, 64, {{"samples", "4000"}, {"shadows", "on"}}, {}, "gouraud");
+    TrpCallbacks callbacks;
+    check(trp_callbacks_init(&callbacks, sizeof callbacks));
+    callbacks.progress = [](void*, const TrpProgress* progress) { return progress->seconds < 0.1 ? 1 : 0; };
+    const auto start = std::chrono::steady_clock::now();
+    EXPECT_EQ(trp_render_run(render, &callbacks), TRP_CANCELLED);
+    EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 5);
 }
 
 TEST(Raster, RefusesDepthOfField) {
