@@ -214,7 +214,7 @@ void draw_any(const ClusterToDraw& c, uint32_t k, const Projection& projection, 
                                  {-1, 0, projection.width() + double{kGuardBand}, 0},
                                  {0, 1, kGuardBand, 0},
                                  {0, -1, projection.height() + double{kGuardBand}, 0}};
-    std::array<FilmPoint, 8> polygon, next;
+    std::array<FilmPoint, 16> polygon, next;  // 8 but for rounding
     size_t count = 3;
     std::copy_n(p, 3, polygon.begin());
     for (const double* bound : bounds) {
@@ -224,6 +224,7 @@ void draw_any(const ClusterToDraw& c, uint32_t k, const Projection& projection, 
         };
         size_t kept = 0;
         for (size_t m = 0; m < count; ++m) {
+            if (kept + 2 > next.size()) return;
             const FilmPoint *a = &polygon[m], *b = &polygon[(m + 1) % count];
             const double at_a = inside(*a), at_b = inside(*b);
             if (at_a >= 0) next[kept++] = *a;
@@ -238,12 +239,16 @@ void draw_any(const ClusterToDraw& c, uint32_t k, const Projection& projection, 
         polygon.swap(next);
         if (count < 3) return;
     }
-    GridPoint g[8];
+    GridPoint g[16];
     float least = 1e38f, most = -1e38f;
+    // Beyond 1e16 rounding takes a cut corner anywhere: it is held within the guard band, or given up.
+    const auto grid = [](double film, double size, int32_t origin) {
+        return std::llround(std::clamp(film, -double{kGuardBand}, size + kGuardBand) * kSubpixels) - origin;
+    };
     for (size_t m = 0; m < count; ++m) {
-        const double depth = perspective ? polygon[m][2] : 1;
-        g[m] = {std::llround(polygon[m][0] / depth * kSubpixels) - tile.origin_x,
-                std::llround(polygon[m][1] / depth * kSubpixels) - tile.origin_y};
+        const double depth = perspective ? polygon[m][2] : 1, x = polygon[m][0] / depth, y = polygon[m][1] / depth;
+        if (std::isnan(x) || std::isnan(y)) return;
+        g[m] = {grid(x, projection.width(), tile.origin_x), grid(y, projection.height(), tile.origin_y)};
         const float near = projection.nearness(static_cast<float>(polygon[m][2]));
         least = std::min(least, near), most = std::max(most, near);
     }

@@ -297,7 +297,7 @@ TEST(Raster, DrawsAnyGeometry) {
     for (int t = 0; t < 3000; ++t)
         for (int k = 0; k < 3; ++k) mesh.corners.push_back(static_cast<uint32_t>(random() % corners.size()));
     const uint32_t first = static_cast<uint32_t>(corners.size());
-    for (uint32_t t = 0; t < 100000; ++t) {
+    for (uint32_t t = 0; t < 20000; ++t) {
         const float x = 1e-5f * static_cast<float>(t % 100), y = 1e-5f * static_cast<float>(t / 100 % 100);
         mesh.positions.insert(mesh.positions.end(), {x, y, -2, x + 1e-5f, y, -2, x, y + 1e-5f, -2});
         mesh.corners.insert(mesh.corners.end(), {first + 3 * t, first + 3 * t + 1, first + 3 * t + 2});
@@ -309,7 +309,7 @@ TEST(Raster, DrawsAnyGeometry) {
         look_down(scene, type);
         scene.commit();
         for (const char* method : {"visible_surface", "flat", "gouraud", "phong"}) {
-            Render render(scene, 50, 40, {{"raster.samples", "3"}}, {"Normal", "Position", "UV"}, method);
+            Render render(scene, 50, 40, {{"raster.samples", "1"}}, {"Normal", "Position", "UV"}, method);
             for (const float value : render.run().read().values) ASSERT_TRUE(std::isfinite(value)) << method;
         }
     }
