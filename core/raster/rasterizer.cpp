@@ -170,7 +170,7 @@ bool Rasterizer::block(uint32_t place, const SampleOffset& offset, uint32_t samp
 void Rasterizer::sample(const TileWork& work, uint32_t number, Workspace& w) const {
     const SampleOffset& offset = pattern[number];
     const uint32_t blocks = w.visibility.blocks_across() * w.visibility.blocks_up();
-    if (snapshot.any_holes) {
+    if (snapshot.seen_through) {
         w.throughput.assign(size_t{blocks} * kBatch, 1.0f);
         w.first.assign(size_t{blocks} * kBatch, 0);
     }
@@ -191,7 +191,7 @@ void Rasterizer::sample(const TileWork& work, uint32_t number, Workspace& w) con
         job.counts->primary_time += nanoseconds(start, drawn);
         job.counts->shading_time += nanoseconds(drawn, Clock::now());
     }
-    if (number > 0 || !snapshot.any_holes || !job.film->passes().has(kDepth)) return;
+    if (number > 0 || !snapshot.seen_through || !job.film->passes().has(kDepth)) return;
     for (uint32_t place = 0; place < blocks; ++place) {
         finish_depth(&w.first[size_t{place} * kBatch],
                      job.film->block(work.block_x0 + place % w.visibility.blocks_across(),

@@ -82,6 +82,7 @@ void make_materials(const Scene& scene, Snapshot& snapshot, const Snapshot* prev
             static_cast<uint8_t>((material.has_program() ? kHasProgram : 0) |
                                  (material.has_holes || !material.double_sided ? kMayHaveHoles : 0)));
         snapshot.needs_footprint |= material.needs_footprint();
+        snapshot.seen_through |= (snapshot.material_flags.back() & kMayHaveHoles) != 0;
     }
 }
 

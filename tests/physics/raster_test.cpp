@@ -269,6 +269,29 @@ TEST(Raster, HolesShowWhatLiesBehindThem) {
     }
 }
 
+TEST(Raster, OneSidedSurfacesAreNotSeenFromBehind) {
+    Scene scene;
+    scene.world({0, 0, 1});
+    const uint32_t one_sided = scene.material([](TrpMaterialDesc& d) {
+        d.emission = {{1, 0, 0}, TRP_NO_NODE};
+        d.diffuse = {{0, 0, 0}, TRP_NO_NODE};
+        d.double_sided = 0;
+    });
+    scene.object(quad({-1, 1, 2}, {1, 1, 2}, {1, -1, 2}, {-1, -1, 2}), one_sided);  // faces down
+    scene.object(floor_square(0.5f, 1), one_sided);
+    scene.camera_above(3);
+    scene.commit();
+    for (const char* method : {"ray_casting", "visible_surface", "flat", "gouraud", "phong"}) {
+        Render render(scene, 30, 30, kCentres, {"Depth"}, method);
+        const Image image = render.run().read(), depth = render.read("Depth");
+        EXPECT_FLOAT_EQ(image.at(15, 15)[0], 1) << method << ": the square below";
+        EXPECT_NEAR(depth.at(15, 15)[0], 9, 1e-4) << method;
+        EXPECT_FLOAT_EQ(image.at(7, 15)[2], 1) << method << ": the world";
+        EXPECT_FLOAT_EQ(image.at(7, 15)[3], 1) << method;
+        EXPECT_NEAR(depth.at(7, 15)[0], 1e10, 1e5) << method;
+    }
+}
+
 TEST(Raster, EdgeSamplesCoverAsMuchAsTheShape) {
     // A square of 10.5 × 10.5 pixels: with a box filter its mean coverage is its area.
     Scene scene;
