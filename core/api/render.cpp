@@ -1,11 +1,11 @@
 // Renders.
 #include <sys/resource.h>
 
-#include <chrono>
 #include <utility>
 
 #include "api/guard.h"
 #include "api/handles.h"
+#include "base/clock.h"
 #include "base/parallel.h"
 #include "film/picture_file.h"
 
@@ -149,12 +149,12 @@ TrpStatus trp_render_run(TrpRender* render, const TrpCallbacks* callbacks) {
         NewFilm film(*render);
         RenderJob::Counts counts;
         RenderJob job{render->snapshot, render->settings, render->film.get(), &render->cancelled, &counts};
-        const auto start = std::chrono::steady_clock::now();
+        const auto start = Clock::now();
         const bool whole = kMethods[render->method].run(job, events);
         film.kept = true;
         TrpStatistics& s = render->statistics = {};
         s.threads = thread_count(render->settings.threads);
-        s.render_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        s.render_seconds = seconds_since(start);
         s.primary_rays = counts.primary_rays;
         s.shadow_rays = counts.shadow_rays;
         s.primary_seconds = 1e-9 * static_cast<double>(counts.primary_time);

@@ -67,14 +67,12 @@ uint32_t Film::block_index(uint32_t block_x, uint32_t block_y) const {
     return (block_y - first_block_y_) * blocks_across_ + block_x - first_block_x_;
 }
 
-const float* Film::channel(uint32_t block, PassId pass) const {
-    const auto channels = static_cast<size_t>(passes_.channels());
-    return &values_[kBatch * (block * channels + static_cast<size_t>(passes_.first_channel(pass)))];
+float* Film::values(uint32_t block) const {
+    return &values_[size_t{block} * kBatch * static_cast<size_t>(passes_.channels())];
 }
 
 BlockSums Film::block(uint32_t block_x, uint32_t block_y) {
-    const auto channels = static_cast<size_t>(passes_.channels());
-    return {passes_, &values_[size_t{block_index(block_x, block_y)} * kBatch * channels]};
+    return {passes_, values(block_index(block_x, block_y))};
 }
 
 void Film::add_samples(uint32_t block_x, uint32_t block_y, uint32_t samples) {
@@ -89,11 +87,11 @@ void Film::read(PassId pass, uint32_t x, uint32_t y, uint32_t w, uint32_t h, flo
             const uint32_t end = std::min((begin / kBlockSide + 1) * kBlockSide, x + w);
             const uint32_t block = block_index(begin / kBlockSide, row / kBlockSide), samples = block_samples_[block];
             const float scale = kPasses[pass].averaged && samples ? 1 / static_cast<float>(samples) : 1;
-            const float* values = channel(block, pass);
+            const float* first = BlockSums(passes_, values(block)).channel(pass, 0);
             for (uint32_t column = begin; column < end; ++column) {
                 const uint32_t lane = lane_at(column % kBlockSide, row % kBlockSide);
                 for (size_t c = 0; c < count; ++c)
-                    *out++ = pass == kSampleCount ? static_cast<float>(samples) : values[c * kBatch + lane] * scale;
+                    *out++ = pass == kSampleCount ? static_cast<float>(samples) : first[c * kBatch + lane] * scale;
             }
             begin = end;
         }

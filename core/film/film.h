@@ -83,7 +83,7 @@ class Film {
 
   private:
     uint32_t block_index(uint32_t block_x, uint32_t block_y) const;
-    const float* channel(uint32_t block, PassId pass) const;  // the pass's first
+    float* values(uint32_t block) const;
 
     Window window_;
     PassList passes_;

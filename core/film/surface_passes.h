@@ -6,6 +6,9 @@
 
 namespace trp {
 
+inline constexpr int kGreatestLayers = 64;        // of surfaces with holes in a row, one behind the other
+inline constexpr float kLeastThroughput = 1e-3f;  // less is nothing
+
 struct SeenSurfaces {
     const Snapshot& snapshot;
     const Points& points;

@@ -6,6 +6,7 @@
 #include <deque>
 #include <mutex>
 
+#include "base/clock.h"
 #include "base/parallel.h"
 
 namespace trp {
@@ -107,7 +108,7 @@ bool run_tiles(RenderJob& job, const RenderEvents& events, const std::function<v
         mailbox.news.notify_all();
     });
 
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     const double total = static_cast<double>(tiles.size()) * passes;
     uint64_t finished = 0;
     try {
@@ -126,7 +127,7 @@ bool run_tiles(RenderJob& job, const RenderEvents& events, const std::function<v
                 TrpProgress progress{};
                 progress.struct_size = sizeof progress;
                 progress.fraction = static_cast<double>(finished) / total;
-                progress.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+                progress.seconds = seconds_since(start);
                 progress.seconds_left = finished ? progress.seconds * (total / static_cast<double>(finished) - 1) : -1;
                 progress.pass = static_cast<uint32_t>(std::min<uint64_t>(finished / tiles.size(), passes - 1));
                 progress.pass_count = passes;

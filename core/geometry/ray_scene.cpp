@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <unordered_map>
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "base/parallel.h"
 
@@ -154,7 +154,7 @@ std::shared_ptr<RayScene> RayScene::build(const std::vector<Placement>& placemen
         slots[free_slot] = place(*p);
     }
 
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     const bool in_place = previous && previous.use_count() == 1;
     auto result = in_place ? std::move(previous) : std::make_shared<RayScene>();
     if (!in_place)
@@ -172,7 +172,7 @@ std::shared_ptr<RayScene> RayScene::build(const std::vector<Placement>& placemen
         std::any_of(result->slots_.begin(), result->slots_.end(), [](const auto& s) { return s && s->tree; });
     rtcCommitScene(result->scene_.get());
     check_embree();
-    result->build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    result->build_seconds_ = seconds_since(start);
     return result;
 }
 

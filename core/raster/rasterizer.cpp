@@ -3,9 +3,9 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
+#include "base/clock.h"
 #include "film/pixel_random.h"
 #include "film/surface_passes.h"
 #include "raster/face_points.h"
@@ -17,17 +17,9 @@
 namespace trp {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr uint32_t kTileSide = 256;  // pixels: a tile's buffers fit a core's cache, and few clusters lie in two tiles
-constexpr int kGreatestLayers = 64;  // of surfaces with holes in a row behind one sample
-constexpr float kLeastThroughput = 1e-3f;
 
 enum class Evaluation { ambient, polygon, vertex, pixel };
-
-uint64_t nanoseconds(Clock::time_point from, Clock::time_point to) {
-    return static_cast<uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(to - from).count());
-}
 
 // What a thread evaluates with.
 struct Shading {
@@ -48,7 +40,6 @@ struct Workspace : Shading {
     LaneVec3 origins, directions;
     Points points;
     uint8_t missed[kBatch];
-    BlockSums sums;
 };
 
 // A render's constants.
@@ -82,12 +73,8 @@ void Rasterizer::illuminate(uint32_t block_x, uint32_t block_y, uint32_t number,
     add_ambient(points, w.coefficients, illumination.ambient, w.radiance);
     if (evaluation == Evaluation::ambient) return;
     const bool one = light_samples == 1;
-    for (int c = 0; c < 3; ++c) {
-        if (!one) std::fill_n(w.lit[c], kBatch, 0.0f);
-        if (!wants_shadow_pass) continue;
-        std::fill_n(w.arriving.unblocked[c], kBatch, 0.0f);
-        std::fill_n(w.arriving.blocked[c], kBatch, 0.0f);
-    }
+    for (int c = 0; c < 3 && !one; ++c) std::fill_n(w.lit[c], kBatch, 0.0f);
+    if (wants_shadow_pass) w.arriving.clear();
     ShadowCounts shadows;
     for (uint32_t s = number; s < number + light_samples && !*job.cancelled; ++s)
         add_lights(
@@ -141,8 +128,8 @@ bool Rasterizer::block(uint32_t place, const SampleOffset& offset, uint32_t samp
     if (any_seen || snapshot.world.texture != TRP_NO_ID)
         make_directions(view, {x, y, 0.5f + offset.x / kSubpixels, 0.5f + offset.y / kSubpixels}, w.origins,
                         w.directions);
-    w.sums = job.film->block(x / kBlockSide, y / kBlockSide);
-    if (any_missed) add_background(snapshot, w.directions, w.missed, throughput, job.settings.transparent, w.sums);
+    const BlockSums sums = job.film->block(x / kBlockSide, y / kBlockSide);
+    if (any_missed) add_background(snapshot, w.directions, w.missed, throughput, job.settings.transparent, sums);
     bool any_left = false;
     uint8_t own_first[kBatch] = {};
     uint8_t* first = layered ? &w.first[size_t{place} * kBatch] : own_first;
@@ -151,7 +138,7 @@ bool Rasterizer::block(uint32_t place, const SampleOffset& offset, uint32_t samp
         shade(x / kBlockSide, y / kBlockSide, sample, layer, w);
         add_surfaces(
             {snapshot, w.points, w.coefficients, w.radiance, throughput, wants_shadow_pass ? &w.arriving : nullptr},
-            sample == 0 ? first : nullptr, w.sums);
+            sample == 0 ? first : nullptr, sums);
     }
     if (layered)
         for (int i = 0; i < kBatch; ++i) {
@@ -162,7 +149,7 @@ bool Rasterizer::block(uint32_t place, const SampleOffset& offset, uint32_t samp
             }
             any_left |= throughput[i] > 0;
         }
-    if (sample == 0 && layer == 0 && !layered) finish_depth(first, w.sums);
+    if (sample == 0 && layer == 0 && !layered) finish_depth(first, sums);
     job.film->add_samples(x / kBlockSide, y / kBlockSide, layer == 0);
     return any_left;
 }
@@ -172,7 +159,7 @@ void Rasterizer::sample(const TileWork& work, uint32_t number, Workspace& w) con
     const uint32_t blocks = w.visibility.blocks_across() * w.visibility.blocks_up();
     if (snapshot.seen_through) {
         w.throughput.assign(size_t{blocks} * kBatch, 1.0f);
-        w.first.assign(size_t{blocks} * kBatch, 0);
+        if (number == 0) w.first.assign(size_t{blocks} * kBatch, 0);
     }
     bool any_left = true;
     for (int layer = 0; layer < kGreatestLayers && any_left; ++layer) {

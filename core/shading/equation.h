@@ -34,6 +34,9 @@ void add_ambient(const Points& points, const Coefficients& coefficients, const V
 // Where `arriving` is given, it gains luminance-free sums of (N·L) I_L, unblocked and blocked, for the shadow pass.
 struct ArrivingLight {
     LaneVec3 unblocked, blocked;
+    void clear() {
+        for (int c = 0; c < 3; ++c) std::fill_n(unblocked[c], kBatch, 0.0f), std::fill_n(blocked[c], kBatch, 0.0f);
+    }
 };
 void add_light(Specular specular, const Points& points, const Coefficients& coefficients, const LightSamples& samples,
                const float* visibility, LaneVec3& radiance, ArrivingLight* arriving);

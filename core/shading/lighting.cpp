@@ -1,14 +1,14 @@
 #include "shading/lighting.h"
 
 #include <algorithm>
-#include <chrono>
+
+#include "base/clock.h"
 
 namespace trp {
 
 void add_lights(const Snapshot& snapshot, const Illumination& illumination, Coherence coherence,
                 const RandomPairs& random, const Points& points, const Coefficients& coefficients, LaneVec3& radiance,
                 ArrivingLight* arriving, LightScratch& scratch, ProgramScratch& program, ShadowCounts& counts) {
-    using Clock = std::chrono::steady_clock;
     for (size_t l = 0; l < snapshot.lights.size(); ++l) {
         const ReadyLight& light = snapshot.lights[l];
         const bool is_world = light.kind == ReadyLight::Kind::world || light.kind == ReadyLight::Kind::world_map;
@@ -19,8 +19,7 @@ void add_lights(const Snapshot& snapshot, const Illumination& illumination, Cohe
             counts.rays +=
                 trace_shadows(snapshot, points, scratch.samples, is_world ? Coherence::incoherent : coherence,
                               scratch.visibility, scratch.shadow, program);
-            counts.nanoseconds += static_cast<uint64_t>(
-                std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - before).count());
+            counts.nanoseconds += nanoseconds(before, Clock::now());
         } else {
             std::fill_n(scratch.visibility, kBatch, 1.0f);
         }

@@ -1,20 +1,14 @@
 #include "shading/snapshot.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <set>
 
+#include "base/clock.h"
 #include "base/parallel.h"
 
 namespace trp {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 void warn(Snapshot& snapshot, int32_t code, uint32_t item, std::string text) {
     snapshot.warnings.push_back({code, item, std::move(text)});

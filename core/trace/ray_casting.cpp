@@ -1,9 +1,9 @@
 #include "trace/ray_casting.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
+#include "base/clock.h"
 #include "film/pixel_random.h"
 #include "film/surface_passes.h"
 #include "shading/footprints.h"
@@ -11,15 +11,6 @@
 
 namespace trp {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-constexpr int kGreatestLayers = 64;  // of surfaces with holes in a row along one ray
-constexpr float kLeastThroughput = 1e-3f;
-
-uint64_t nanoseconds(Clock::time_point from, Clock::time_point to) {
-    return static_cast<uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(to - from).count());
-}
 
 // What a thread works with; large, so made once for a tile.
 struct Workspace {
@@ -61,11 +52,7 @@ void Caster::shade(uint32_t block_x, uint32_t block_y, uint32_t sample, Coherenc
                         w.points);
     evaluate(snapshot, w.points, w.coefficients, w.program);
     add_ambient(w.points, w.coefficients, illumination.ambient, w.radiance);
-    if (wants_shadow_pass)
-        for (int c = 0; c < 3; ++c) {
-            std::fill_n(w.arriving.unblocked[c], kBatch, 0.0f);
-            std::fill_n(w.arriving.blocked[c], kBatch, 0.0f);
-        }
+    if (wants_shadow_pass) w.arriving.clear();
     ShadowCounts shadows;
     add_lights(
         snapshot, illumination, coherence,
