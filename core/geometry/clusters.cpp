@@ -28,39 +28,40 @@ uint32_t morton_code(const Vec3& p, const Bounds& bounds) {
 
 }  // namespace
 
-ClusterSet make_clusters(const Vec3* positions, uint32_t vertex_count, const uint32_t* vertices,
-                         uint32_t triangle_count, const Bounds& bounds) {
+ClusterSet make_clusters(const Mesh& mesh, uint32_t corners, const uint32_t* vertices, uint32_t count,
+                         const Bounds& bounds) {
     ClusterSet set;
-    if (triangle_count == 0) return set;
-    std::vector<uint64_t> order(triangle_count);  // code above triangle, so that ties keep their order
-    parallel_ranges(triangle_count, 4096, [&](size_t begin, size_t end) {
-        for (size_t t = begin; t < end; ++t) {
-            const uint32_t* v = vertices + 3 * t;
-            const Vec3 centre = (positions[v[0]] + positions[v[1]] + positions[v[2]]) / 3;
-            order[t] = uint64_t{morton_code(centre, bounds)} << 32 | t;
+    if (count == 0) return set;
+    const std::vector<Vec3>& positions = mesh.positions;
+    std::vector<uint64_t> order(count);  // code above primitive, so that ties keep their order
+    parallel_ranges(count, 4096, [&](size_t begin, size_t end) {
+        for (size_t p = begin; p < end; ++p) {
+            Vec3 centre(0, 0, 0);
+            for (uint32_t k = 0; k < corners; ++k) centre += positions[vertices[corners * p + k]];
+            order[p] = uint64_t{morton_code(centre / static_cast<float>(corners), bounds)} << 32 | p;
         }
     });
     tbb::parallel_sort(order.begin(), order.end());
 
     constexpr size_t kPadding = 64;
-    set.triangles.reserve(triangle_count + kPadding);
-    for (auto& corners : set.corners) corners.reserve(triangle_count + kPadding);
-    std::vector<uint32_t> seen_by(vertex_count, ~0u);  // the last cluster that has the vertex
-    std::vector<uint8_t> place(vertex_count);          // among that cluster's
+    set.primitives.reserve(count);
+    for (uint32_t k = 0; k < corners; ++k) set.corners[k].reserve(count + kPadding);
+    std::vector<uint32_t> seen_by(mesh.vertex_count, ~0u);  // the last cluster that has the vertex
+    std::vector<uint8_t> place(mesh.vertex_count);          // among that cluster's
     Cluster cluster;
     const auto finish = [&] {
         set.clusters.push_back(cluster);
         cluster = {};
-        cluster.first_triangle = static_cast<uint32_t>(set.triangles.size());
+        cluster.first = static_cast<uint32_t>(set.primitives.size());
         cluster.first_vertex = static_cast<uint32_t>(set.vertices.size());
     };
     for (const uint64_t entry : order) {
-        const auto triangle = static_cast<uint32_t>(entry);
-        const uint32_t* v = vertices + 3 * size_t{triangle};
-        if (cluster.triangle_count == Cluster::kMostTriangles || cluster.vertex_count + 3 > Cluster::kMostVertices)
+        const auto primitive = static_cast<uint32_t>(entry);
+        const uint32_t* v = vertices + size_t{corners} * primitive;
+        if (cluster.count == Cluster::kMostPrimitives || cluster.vertex_count + corners > Cluster::kMostVertices)
             finish();
         const auto number = static_cast<uint32_t>(set.clusters.size());
-        for (int k = 0; k < 3; ++k) {
+        for (uint32_t k = 0; k < corners; ++k) {
             if (seen_by[v[k]] != number) {
                 seen_by[v[k]] = number;
                 place[v[k]] = static_cast<uint8_t>(cluster.vertex_count++);
@@ -69,11 +70,11 @@ ClusterSet make_clusters(const Vec3* positions, uint32_t vertex_count, const uin
             }
             set.corners[k].push_back(place[v[k]]);
         }
-        set.triangles.push_back(triangle);
-        ++cluster.triangle_count;
+        set.primitives.push_back(primitive);
+        ++cluster.count;
     }
     finish();
-    for (auto& corners : set.corners) corners.resize(triangle_count + kPadding);
+    for (uint32_t k = 0; k < corners; ++k) set.corners[k].resize(count + kPadding);
     return set;
 }
 

@@ -1,5 +1,5 @@
-// A surface's triangles in small groups that lie close together, for projection: what a group has in common is done
-// once (its bounds, its vertices).
+// A mesh's triangles or edges in small groups that lie close together, for projection: what a group has in common is
+// done once (its bounds, its vertices).
 #pragma once
 
 #include <cstdint>
@@ -18,22 +18,23 @@ struct Bounds {
 };
 
 struct Cluster {
-    static constexpr uint32_t kMostTriangles = 128, kMostVertices = 192;
+    static constexpr uint32_t kMostPrimitives = 128, kMostVertices = 192;
     Bounds bounds;
-    uint32_t first_triangle = 0, triangle_count = 0;  // in ClusterSet's arrays
+    uint32_t first = 0, count = 0;  // in ClusterSet's arrays
     uint32_t first_vertex = 0, vertex_count = 0;
 };
 
 struct ClusterSet {
     std::vector<Cluster> clusters;
-    std::vector<uint32_t> triangles;  // of the surface
-    std::vector<uint32_t> vertices;   // of the mesh
-    // Per triangle, which of the cluster's vertices its corners are. Padded, to be read in whole vectors.
+    std::vector<uint32_t> primitives;  // triangles of the surface, or edges
+    std::vector<uint32_t> vertices;    // of the mesh
+    // Per primitive, which of the cluster's vertices its corners are. Padded, to be read in whole vectors.
     std::vector<uint8_t> corners[3];
 };
 
-// Clusters of triangles, three `vertices` to each, in Morton order of their centres.
-ClusterSet make_clusters(const Vec3* positions, uint32_t vertex_count, const uint32_t* vertices,
-                         uint32_t triangle_count, const Bounds& bounds);
+// Clusters of primitives with so many corners (2 or 3), which are given in `vertices`, in Morton order of their
+// centres.
+ClusterSet make_clusters(const Mesh& mesh, uint32_t corners, const uint32_t* vertices, uint32_t count,
+                         const Bounds& bounds);
 
 }  // namespace trp

@@ -1,13 +1,13 @@
 #include "geometry/normals.h"
 
 #include <atomic>
-#include <bit>
 #include <numeric>
 #include <unordered_map>
 #include <unordered_set>
 
 #include "base/parallel.h"
 #include "geometry/triangulate.h"
+#include "geometry/weld.h"
 #include "triptych/triptych.h"
 
 namespace trp {
@@ -123,17 +123,7 @@ std::vector<Vec3> averaged_corner_normals(const Mesh& mesh) {
 }
 
 std::vector<Vec3> welded_vertex_normals(const Mesh& mesh) {
-    struct Hash {
-        size_t operator()(const Vec3& p) const {
-            uint64_t h = 0;
-            for (int k = 0; k < 3; ++k) h = (h ^ std::bit_cast<uint32_t>(p[k] + 0.0f)) * 0x9E3779B97F4A7C15u;
-            return h ^ (h >> 32);
-        }
-    };
-    std::unordered_map<Vec3, uint32_t, Hash> first;
-    first.reserve(mesh.vertex_count);
-    std::vector<uint32_t> welded(mesh.vertex_count);
-    for (uint32_t v = 0; v < mesh.vertex_count; ++v) welded[v] = first.emplace(mesh.positions[v], v).first->second;
+    const std::vector<uint32_t> welded = weld_vertices(mesh);
     std::vector<Vec3> sums(mesh.vertex_count, Vec3(0, 0, 0));
     add_face_normals(mesh, sums, [&](uint32_t corner) { return welded[mesh.corner_vertices[corner]]; });
     std::vector<Vec3> normals(mesh.vertex_count);

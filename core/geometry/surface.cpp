@@ -11,6 +11,8 @@ namespace trp {
 Surface::Surface(std::shared_ptr<const Mesh> mesh) : mesh_(std::move(mesh)) {
     make_triangles();
     for (size_t i = 0; i < 3 * size_t{triangle_count_}; ++i) bounds_.extend(mesh_->positions[triangle_vertices()[i]]);
+    if (triangle_count_ == 0)
+        for (const uint32_t v : mesh_->edges) bounds_.extend(mesh_->positions[v]);
 
     const std::vector<uint8_t>& smooth = mesh_->face_smooth;
     const bool any_smooth = std::any_of(smooth.begin(), smooth.end(), [](uint8_t s) { return s; });
@@ -87,11 +89,14 @@ const NormalLayer& Surface::averaged_normals() const {
 }
 
 const ClusterSet& Surface::clusters() const {
-    std::call_once(clusters_once_, [this] {
-        clusters_ =
-            make_clusters(mesh_->positions.data(), mesh_->vertex_count, triangle_vertices(), triangle_count_, bounds_);
-    });
+    std::call_once(clusters_once_,
+                   [this] { clusters_ = make_clusters(*mesh_, 3, triangle_vertices(), triangle_count_, bounds_); });
     return clusters_;
+}
+
+const EdgeSet& Surface::edges() const {
+    std::call_once(edges_once_, [this] { edges_ = make_edges(*mesh_); });
+    return edges_;
 }
 
 uint64_t Surface::bytes() const {

@@ -6,7 +6,7 @@
 #include <mutex>
 #include <vector>
 
-#include "geometry/clusters.h"
+#include "geometry/edges.h"
 
 namespace trp {
 
@@ -38,8 +38,11 @@ class Surface {
     const NormalLayer& averaged_normals() const;
     // The triangles in groups, for projection. Made on first use. Any thread.
     const ClusterSet& clusters() const;
-    bool mixed_smooth() const { return mixed_smooth_; }        // some faces are flat in spite of normals()
-    const Bounds& bounds() const { return bounds_; }           // of the triangles, at the first time sample
+    // The mesh's edges. Made on first use. Any thread.
+    const EdgeSet& edges() const;
+    bool mixed_smooth() const { return mixed_smooth_; }  // some faces are flat in spite of normals()
+    // Of the triangles, or where there are none, of the mesh's own edges; at the first time sample.
+    const Bounds& bounds() const { return bounds_; }
     uint32_t dropped_faces() const { return dropped_faces_; }  // without area
     uint64_t bytes() const;                                    // held beside the mesh
 
@@ -58,6 +61,8 @@ class Surface {
     mutable NormalLayer averaged_;
     mutable std::once_flag clusters_once_;
     mutable ClusterSet clusters_;
+    mutable std::once_flag edges_once_;
+    mutable EdgeSet edges_;
 };
 
 }  // namespace trp

@@ -71,9 +71,9 @@ DrawList make_draw_list(const Snapshot& snapshot, const Projection& projection, 
                                            [](const DrawnCluster& c) { return c.x0 >= c.x1; }),
                             list.clusters.end());
     }
-    if (list.clusters.size() >= (uint64_t{1} << 31) / Cluster::kMostTriangles)
+    if (list.clusters.size() >= (uint64_t{1} << 31) / Cluster::kMostPrimitives)
         fail(TRP_ERROR_MEMORY, "{} groups of triangles are before the camera; at most {} can be drawn",
-             list.clusters.size(), (uint64_t{1} << 31) / Cluster::kMostTriangles);
+             list.clusters.size(), (uint64_t{1} << 31) / Cluster::kMostPrimitives);
     tbb::parallel_sort(list.clusters.begin(), list.clusters.end(), [](const DrawnCluster& a, const DrawnCluster& b) {
         return std::tuple(-a.nearness, a.slot, a.cluster) < std::tuple(-b.nearness, b.slot, b.cluster);
     });

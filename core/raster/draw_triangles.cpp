@@ -1,4 +1,4 @@
-// draw_cluster(): vertices to the film's grid, triangles to edge functions, pixels to the visibility buffer.
+// draw_triangles(): vertices to the film's grid, triangles to edge functions, pixels to the visibility buffer.
 //
 // Coordinates count from the tile's first sample, so that samples lie at multiples of 256 (pixel i, j at 256 i, 256 j).
 // The edge function E(p) = (b − a) × (p − a) then is 256 (B j + A i) + C with A = −(b − a).y, B = (b − a).x, and its
@@ -14,12 +14,12 @@
 #include "hwy/foreach_target.h"
 
 #include "hwy/highway.h"
+#include "raster/cluster_vertices-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace trp::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr int kMostLanes = HWY_MAX_BYTES / sizeof(float);
 // A triangle less than this wide and high has edge functions within 32 bits about its corner.
 constexpr int32_t kSmall = 64 * kSubpixels;
 
@@ -154,28 +154,14 @@ void draw_large(GridPoint p0, GridPoint p1, GridPoint p2, const std::array<doubl
         }
 }
 
-// The film's x and y, times the depth through a perspective camera, and the depth.
-using FilmPoint = std::array<double, 3>;
-
-FilmPoint on_film(const ClusterToDraw& c, uint32_t vertex) {
-    const Vec3& p = c.positions[vertex];
-    FilmPoint q;
-    for (int r = 0; r < 3; ++r) {
-        const float* row = c.transform.rows[r];
-        q[r] = static_cast<double>(row[0]) * p.x + static_cast<double>(row[1]) * p.y +
-               static_cast<double>(row[2]) * p.z + row[3];
-    }
-    return q;
-}
-
 // A triangle that is large on the film or reaches beyond what its grid can hold: cut by the near plane and the guard
 // band, and drawn as a fan.
-void draw_any(const ClusterToDraw& c, uint32_t k, const Projection& projection, const VisibilityTile::Buffers& tile,
+void draw_any(const PlacedCluster& c, uint32_t k, uint32_t key, const VisibilityTile::Buffers& tile,
               const int32_t* grid_x, const int32_t* grid_y, bool cut) {
-    const uint32_t first = c.set.clusters[c.cluster].first_triangle + k;
-    const uint32_t* v = c.vertices + 3 * size_t{c.set.triangles[first]};
-    FilmPoint p[3] = {on_film(c, v[0]), on_film(c, v[1]), on_film(c, v[2])};
+    const Projection& projection = c.projection;
     const bool perspective = projection.perspective();
+    FilmPoint p[3];
+    for (int m = 0; m < 3; ++m) p[m] = on_film(c.transform, c.positions[c.vertex(k, m)]);
 
     // Nearness over the film, from the plane N · q = D: 1 / depth = (N.x x + N.y y + N.z) / D, or the depth itself.
     double normal[3], e1[3], e2[3], distance = 0;
@@ -195,12 +181,11 @@ void draw_any(const ClusterToDraw& c, uint32_t k, const Projection& projection, 
     // From the film's pixels to the tile's.
     plane[0] += (plane[1] * tile.origin_x + plane[2] * tile.origin_y) / kSubpixels;
 
-    const uint32_t key = c.first_key + k;
     if (!cut) {
         GridPoint g[3];
         float least = 1e38f, most = -1e38f;
         for (int m = 0; m < 3; ++m) {
-            const uint8_t local = c.set.corners[m][first];
+            const uint8_t local = c.set.corners[m][c.cluster().first + k];
             g[m] = {grid_x[local], grid_y[local]};
             const float near = projection.nearness(static_cast<float>(p[m][2]));
             least = std::min(least, near), most = std::max(most, near);
@@ -209,24 +194,15 @@ void draw_any(const ClusterToDraw& c, uint32_t k, const Projection& projection, 
     }
 
     // Sutherland and Hodgman, "Reentrant Polygon Clipping" (1974), in an order of corners that neighbours share.
-    const double bounds[5][4] = {{0, 0, 1, -projection.clip_start()},
-                                 {1, 0, kGuardBand, 0},
-                                 {-1, 0, projection.width() + double{kGuardBand}, 0},
-                                 {0, 1, kGuardBand, 0},
-                                 {0, -1, projection.height() + double{kGuardBand}, 0}};
     std::array<FilmPoint, 16> polygon, next;  // 8 but for rounding
     size_t count = 3;
     std::copy_n(p, 3, polygon.begin());
-    for (const double* bound : bounds) {
-        const auto inside = [&](const FilmPoint& q) {
-            if (bound[3] != 0 || perspective) return bound[0] * q[0] + bound[1] * q[1] + bound[2] * q[2] + bound[3];
-            return bound[0] * q[0] + bound[1] * q[1] + bound[2];
-        };
+    for (int bound = 0; bound < kBoundCount; ++bound) {
         size_t kept = 0;
         for (size_t m = 0; m < count; ++m) {
             if (kept + 2 > next.size()) return;
             const FilmPoint *a = &polygon[m], *b = &polygon[(m + 1) % count];
-            const double at_a = inside(*a), at_b = inside(*b);
+            const double at_a = within_bound(projection, bound, *a), at_b = within_bound(projection, bound, *b);
             if (at_a >= 0) next[kept++] = *a;
             if ((at_a >= 0) == (at_b >= 0)) continue;
             double from = at_a, to = at_b;
@@ -255,62 +231,24 @@ void draw_any(const ClusterToDraw& c, uint32_t k, const Projection& projection, 
     for (size_t m = 2; m < count; ++m) draw_large(g[0], g[m - 1], g[m], plane, least, most, key, tile);
 }
 
-void draw_cluster_lanes(const ClusterToDraw& c, const Projection& projection, const VisibilityTile::Buffers& tile) {
+void draw_triangle_lanes(const PlacedCluster& c, uint32_t first_key, const VisibilityTile::Buffers& tile) {
     const hn::ScalableTag<float> d;
     const hn::RebindToSigned<decltype(d)> di;
     using V = hn::Vec<decltype(d)>;
     using VI = hn::Vec<decltype(di)>;
     const int lanes = static_cast<int>(hn::Lanes(d));
-    const Cluster& cluster = c.set.clusters[c.cluster];
+    const Cluster& cluster = c.cluster();
 
-    // Vertices.
-    constexpr size_t kRoom = Cluster::kMostVertices + kMostLanes;
-    alignas(64) int32_t x[kRoom], y[kRoom], is_cut[kRoom];
-    alignas(64) float near[kRoom];
-    bool any_cut = false;
-    const V zero = hn::Zero(d), guard = hn::Set(d, -kGuardBand);
-    const V right = hn::Set(d, static_cast<float>(projection.width()) + kGuardBand),
-            top = hn::Set(d, static_cast<float>(projection.height()) + kGuardBand);
-    for (uint32_t k = 0; k < cluster.vertex_count; k += static_cast<uint32_t>(lanes)) {
-        alignas(64) int32_t index[kMostLanes] = {};
-        const uint32_t here = std::min(cluster.vertex_count - k, static_cast<uint32_t>(lanes));
-        std::copy_n(&c.set.vertices[cluster.first_vertex + k], here, index);
-        const VI at = hn::Mul(hn::Load(di, index), hn::Set(di, 3));
-        const float* positions = &c.positions[0].x;
-        const V px = hn::GatherIndex(d, positions, at), py = hn::GatherIndex(d, positions + 1, at),
-                pz = hn::GatherIndex(d, positions + 2, at);
-        auto row = [&](int r) {
-            const float* m = c.transform.rows[r];
-            return hn::MulAdd(hn::Set(d, m[0]), px,
-                              hn::MulAdd(hn::Set(d, m[1]), py, hn::MulAdd(hn::Set(d, m[2]), pz, hn::Set(d, m[3]))));
-        };
-        const V depth = row(2);
-        V film_x = row(0), film_y = row(1), nearness = hn::Neg(depth);
-        if (projection.perspective()) {
-            nearness = hn::Div(hn::Set(d, 1.0f), depth);
-            film_x = hn::Mul(film_x, nearness), film_y = hn::Mul(film_y, nearness);
-        }
-        const auto whole = hn::And(hn::And(hn::Ge(depth, hn::Set(d, projection.clip_start())),
-                                           hn::And(hn::Gt(film_x, guard), hn::Gt(film_y, guard))),
-                                   hn::And(hn::Lt(film_x, right), hn::Lt(film_y, top)));
-        any_cut |= !hn::AllTrue(d, whole);
-        auto grid = [&](V film, int32_t origin) {
-            const V scaled = hn::IfThenElse(whole, hn::Mul(film, hn::Set(d, float{kSubpixels})), zero);
-            return hn::Sub(hn::NearestInt(scaled), hn::Set(di, origin));
-        };
-        hn::Store(grid(film_x, tile.origin_x), di, x + k);
-        hn::Store(grid(film_y, tile.origin_y), di, y + k);
-        hn::Store(nearness, d, near + k);
-        hn::Store(hn::IfThenElseZero(hn::RebindMask(di, hn::Not(whole)), hn::Set(di, -1)), di, is_cut + k);
-    }
+    ClusterVertices vertices;
+    project_vertices(c, tile.origin_x, tile.origin_y, vertices);
+    const int32_t *const x = vertices.x, *const y = vertices.y, *const is_cut = vertices.is_cut;
+    const float* const near = vertices.near;
 
     // Triangles: what covers no sample is left out, what is small is set up here.
-    for (uint32_t k = 0; k < cluster.triangle_count; k += static_cast<uint32_t>(lanes)) {
+    for (uint32_t k = 0; k < cluster.count; k += static_cast<uint32_t>(lanes)) {
         const hn::Rebind<uint8_t, decltype(di)> d8;
-        auto corner = [&](int m) {
-            return hn::PromoteTo(di, hn::LoadU(d8, &c.set.corners[m][cluster.first_triangle + k]));
-        };
-        const auto left = hn::FirstN(di, cluster.triangle_count - k);
+        auto corner = [&](int m) { return hn::PromoteTo(di, hn::LoadU(d8, &c.set.corners[m][cluster.first + k])); };
+        const auto left = hn::FirstN(di, cluster.count - k);
         const VI c0 = corner(0), c1 = corner(1), c2 = corner(2);
         const VI x0 = hn::GatherIndex(di, x, c0), y0 = hn::GatherIndex(di, y, c0);
         VI x1 = hn::GatherIndex(di, x, c1), y1 = hn::GatherIndex(di, y, c1), x2 = hn::GatherIndex(di, x, c2),
@@ -325,7 +263,7 @@ void draw_cluster_lanes(const ClusterToDraw& c, const Projection& projection, co
                                       hn::Lt(j0, hn::Set(di, static_cast<int32_t>(tile.height)))));
         wanted = hn::And(wanted, hn::And(hn::Not(hn::Gt(i0, i1)), hn::Not(hn::Gt(j0, j1))));
         auto cut = hn::MaskFromVec(hn::Zero(di));
-        if (any_cut)
+        if (vertices.any_cut)
             cut = hn::Ne(hn::Or(hn::GatherIndex(di, is_cut, c0),
                                 hn::Or(hn::GatherIndex(di, is_cut, c1), hn::GatherIndex(di, is_cut, c2))),
                          hn::Zero(di));
@@ -403,14 +341,13 @@ void draw_cluster_lanes(const ClusterToDraw& c, const Projection& projection, co
                               by_y[m],
                               least[m],
                               most[m],
-                              c.first_key + triangle};
+                              first_key + triangle};
                 draw_small(t, begin_i[m], begin_j[m], end_i[m], end_j[m], tile);
                 continue;
             }
             bool is_clipped = false;
-            for (const auto& corners : c.set.corners)
-                is_clipped |= is_cut[corners[cluster.first_triangle + triangle]] != 0;
-            draw_any(c, triangle, projection, tile, x, y, is_clipped);
+            for (const auto& corners : c.set.corners) is_clipped |= is_cut[corners[cluster.first + triangle]] != 0;
+            draw_any(c, triangle, first_key + triangle, tile, x, y, is_clipped);
         }
     }
 }
@@ -427,11 +364,11 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace trp {
-HWY_EXPORT(draw_cluster_lanes);
+HWY_EXPORT(draw_triangle_lanes);
 HWY_EXPORT(least_of_block);
 
-void draw_cluster(const ClusterToDraw& cluster, const Projection& projection, const VisibilityTile::Buffers& tile) {
-    HWY_DYNAMIC_DISPATCH(draw_cluster_lanes)(cluster, projection, tile);
+void draw_triangles(const PlacedCluster& cluster, uint32_t first_key, const VisibilityTile::Buffers& tile) {
+    HWY_DYNAMIC_DISPATCH(draw_triangle_lanes)(cluster, first_key, tile);
 }
 
 float least_nearness(const float* block) {

@@ -49,15 +49,15 @@ void read_keys(const DrawList& list, const uint32_t* keys, Points& points) {
         points.slot[i] = kNoSlot;
         points.triangle[i] = 0;
         if (keys[i] == kNothing) continue;
-        if (!triangles || keys[i] / Cluster::kMostTriangles != number) {
-            number = keys[i] / Cluster::kMostTriangles;
+        if (!triangles || keys[i] / Cluster::kMostPrimitives != number) {
+            number = keys[i] / Cluster::kMostPrimitives;
             const DrawnCluster& drawn = list.clusters[number];
             const ClusterSet& set = *list.sets[drawn.slot];
             slot = drawn.slot;
-            triangles = &set.triangles[set.clusters[drawn.cluster].first_triangle];
+            triangles = &set.primitives[set.clusters[drawn.cluster].first];
         }
         points.slot[i] = slot;
-        points.triangle[i] = triangles[keys[i] % Cluster::kMostTriangles];
+        points.triangle[i] = triangles[keys[i] % Cluster::kMostPrimitives];
     }
 }
 

@@ -87,10 +87,9 @@ void VisibilityTile::draw(const Snapshot& snapshot, const Projection& projection
                           uint32_t number) {
     const DrawnCluster& cluster = list.clusters[number];
     if (hidden(cluster)) return;
-    const PlacedSurface& surface = snapshot.surfaces[cluster.slot];
-    draw_cluster({surface.positions, surface.vertices, *list.sets[cluster.slot], cluster.cluster,
-                  list.transforms[cluster.slot], number * Cluster::kMostTriangles},
-                 projection, buffers_);
+    draw_triangles({snapshot.surfaces[cluster.slot].positions, *list.sets[cluster.slot], cluster.cluster,
+                    list.transforms[cluster.slot], projection},
+                   number * Cluster::kMostPrimitives, buffers_);
     touch(cluster);
 }
 

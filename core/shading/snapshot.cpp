@@ -171,14 +171,15 @@ void warn_of_motion(const Scene& scene, Snapshot& snapshot) {
               snapshot.camera->world_from_camera.size());
 }
 
-PlacedSurface place(const RayScene& rays, uint32_t slot) {
+// `world_positions`: the vertices where they were moved to world space, else null.
+PlacedSurface place(const Placement& placement, const Vec3* world_positions, const Instance& instance,
+                    std::vector<uint32_t> slot_materials) {
     PlacedSurface out;
-    const Placement& placement = *rays.placement(slot);
     const Surface& surface = *placement.surface;
     out.surface = placement.surface;
     out.mesh = &surface.mesh();
-    out.baked = rays.world_positions(slot) != nullptr;
-    out.positions = out.baked ? rays.world_positions(slot) : out.mesh->positions.data();
+    out.baked = world_positions != nullptr;
+    out.positions = out.baked ? world_positions : out.mesh->positions.data();
     out.vertices = surface.triangle_vertices();
     out.corners = surface.triangle_corners();
     out.faces = surface.triangle_faces();
@@ -190,6 +191,11 @@ PlacedSurface place(const RayScene& rays, uint32_t slot) {
     out.identity = unmoved == Affine{};
     out.normal_sign = placement.world_from_object.determinant() < 0 ? -1.0f : 1.0f;
     out.instance = placement.instance;
+    out.slot_materials = std::move(slot_materials);
+    if (out.slot_materials.size() > 1 && !out.mesh->face_materials.empty())
+        out.face_materials = out.mesh->face_materials.data();
+    out.color = instance.color;
+    out.index = instance.index;
     return out;
 }
 
@@ -202,15 +208,16 @@ void fill_info(const Scene& scene, Snapshot& snapshot) {
     info.light_count = static_cast<uint32_t>(scene.lights.size());
     info.camera_count = static_cast<uint32_t>(scene.cameras.size());
     Bounds bounds;
-    for (const PlacedSurface& placed : snapshot.surfaces) {
-        if (!placed.mesh) continue;
-        info.face_count += placed.mesh->face_count();
-        info.triangle_count += placed.surface->triangle_count();
-        info.vertex_count += placed.mesh->vertex_count;
-        const Bounds placed_bounds = world_bounds(*placed.surface, placed.world_from_object);
-        bounds.extend(placed_bounds.min);
-        bounds.extend(placed_bounds.max);
-    }
+    for (const auto* list : {&snapshot.surfaces, &snapshot.wires})
+        for (const PlacedSurface& placed : *list) {
+            if (!placed.mesh) continue;
+            info.face_count += placed.mesh->face_count();
+            info.triangle_count += placed.surface->triangle_count();
+            info.vertex_count += placed.mesh->vertex_count;
+            const Bounds placed_bounds = world_bounds(*placed.surface, placed.world_from_object);
+            bounds.extend(placed_bounds.min);
+            bounds.extend(placed_bounds.max);
+        }
     for (int k = 0; k < 3; ++k) {
         const float origin = bounds.empty() ? 0 : static_cast<float>(snapshot.origin[k]);
         info.bounds_min[k] = bounds.min[k] + origin;
@@ -246,11 +253,12 @@ std::shared_ptr<const Snapshot> make_snapshot(const Scene& scene, std::shared_pt
     std::map<uint32_t, std::vector<uint32_t>> slots_of;
     for (const auto& [id, instance] : scene.instances) {
         const auto& surface = snapshot->made_surfaces.at(instance->mesh);
-        if (surface->triangle_count() == 0) continue;
+        const bool is_wire = surface->triangle_count() == 0;
+        if (is_wire && (surface->bounds().empty() || !instance->visible_camera)) continue;
         auto& slots = slots_of[id] = resolve_slots(*snapshot, index_of, id, *instance, surface->mesh());
         const bool holes =
             std::any_of(slots.begin(), slots.end(), [&](uint32_t m) { return snapshot->materials[m].has_holes; });
-        snapshot->any_holes |= holes;
+        snapshot->any_holes |= holes && !is_wire;
         Placement p;
         p.instance = id;
         p.surface = surface;
@@ -264,7 +272,10 @@ std::shared_ptr<const Snapshot> make_snapshot(const Scene& scene, std::shared_pt
                              item_name("instance", id, instance->name)));
             continue;
         }
-        placements.push_back(std::move(p));
+        if (is_wire)
+            snapshot->wires.push_back(place(p, nullptr, *instance, slots));
+        else
+            placements.push_back(std::move(p));
     }
 
     // Where nobody else holds the last snapshot, its ray scene is taken out of it and changed in place; all that could
@@ -279,14 +290,9 @@ std::shared_ptr<const Snapshot> make_snapshot(const Scene& scene, std::shared_pt
     snapshot->surfaces.resize(snapshot->rays->slot_count());
     for (uint32_t slot = 0; slot < snapshot->surfaces.size(); ++slot) {
         if (!snapshot->rays->placement(slot)) continue;
-        PlacedSurface placed = place(*snapshot->rays, slot);
-        const Instance& instance = *scene.instances.find(placed.instance);
-        placed.slot_materials = std::move(slots_of[placed.instance]);
-        if (placed.slot_materials.size() > 1 && !placed.mesh->face_materials.empty())
-            placed.face_materials = placed.mesh->face_materials.data();
-        placed.color = instance.color;
-        placed.index = instance.index;
-        snapshot->surfaces[slot] = std::move(placed);
+        const uint32_t id = snapshot->rays->placement(slot)->instance;
+        snapshot->surfaces[slot] = place(*snapshot->rays->placement(slot), snapshot->rays->world_positions(slot),
+                                         *scene.instances.find(id), std::move(slots_of[id]));
     }
     snapshot->lights = make_lights(*snapshot);
     fill_info(scene, *snapshot);

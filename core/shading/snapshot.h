@@ -53,6 +53,7 @@ struct Snapshot {
     Vec3d origin{0, 0, 0};
     std::shared_ptr<RayScene> rays;
     std::vector<PlacedSurface> surfaces;  // by geometry id; empty slots have no mesh
+    std::vector<PlacedSurface> wires;     // that the camera sees: edges without a triangle, which no ray meets
     std::vector<CompiledMaterial> materials;
     std::vector<float> material_rows;     // kCoefficientRows rows of materials.size() numbers each
     std::vector<uint8_t> material_flags;  // MaterialFlag bits of each material, close together for locate()
