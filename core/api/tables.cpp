@@ -1,6 +1,7 @@
 // Methods, settings, passes and node types describe themselves.
 #include "api/guard.h"
 #include "api/handles.h"
+#include "raster/line_drawing.h"
 #include "raster/rasterizer.h"
 #include "scene/nodes.h"
 #include "trace/ray_casting.h"
@@ -8,6 +9,8 @@
 namespace trp {
 
 const MethodRow kMethods[] = {
+    {"wireframe", "Wireframe", "Every edge of the meshes, hidden or not", wireframe},
+    {"hidden_line", "Hidden Lines", "The edges of the meshes without the parts that lie behind faces", hidden_line},
     {"visible_surface", "Visible Surfaces", "The nearest surface in each pixel, under ambient light alone",
      visible_surface},
     {"flat", "Flat Shading", "Light and highlight once for each polygon", flat_shading},
@@ -79,8 +82,9 @@ TrpStatus trp_pass_info(uint32_t index, TrpPassInfo* info) {
     return guard([&] {
         check_index(index, kPassCount, "pass");
         const Pass& row = kPasses[index];
-        write_struct(info, {0, channel_count(static_cast<PassId>(index)), row.name, row.channels, row.description, "*"},
-                     "info");
+        write_struct(
+            info, {0, channel_count(static_cast<PassId>(index)), row.name, row.channels, row.description, row.methods},
+            "info");
         return TRP_OK;
     });
 }

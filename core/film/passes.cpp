@@ -7,17 +7,18 @@
 namespace trp {
 
 const Pass kPasses[kPassCount] = {
-    {"Combined", "RGBA", "The picture: radiance in W/(m² sr) and coverage, colour premultiplied by it", true},
-    {"Depth", "Z", "Distance from the camera along its axis in metres; 1e10 where nothing is seen", false},
-    {"Position", "XYZ", "World position in metres", false},
-    {"Normal", "XYZ", "World-space shading normal, on the side that is seen", true},
-    {"UV", "UVA", "Texture coordinates of the first UV set, and 1 where a surface is seen", false},
-    {"Albedo", "RGB", "Diffuse reflectance K_D", true},
-    {"Emission", "RGB", "Emitted radiance I_E of surfaces in W/(m² sr)", true},
-    {"IndexOB", "X", "The object's index", false},
-    {"IndexMA", "X", "The material's index", false},
-    {"Shadow", "RGB", "The share of the light of all lamps that reaches the surface; 1 where nothing is seen", true},
-    {"SampleCount", "X", "Samples taken in the pixel", false},
+    {"Combined", "RGBA", "The picture: radiance in W/(m² sr) and coverage, colour premultiplied by it", "*", true},
+    {"Depth", "Z", "Distance from the camera along its axis in metres; 1e10 where nothing is seen", "*", false},
+    {"Position", "XYZ", "World position in metres", "*", false},
+    {"Normal", "XYZ", "World-space shading normal, on the side that is seen", kSurfaceMethods, true},
+    {"UV", "UVA", "Texture coordinates of the first UV set, and 1 where a surface is seen", kSurfaceMethods, false},
+    {"Albedo", "RGB", "Diffuse reflectance K_D", kSurfaceMethods, true},
+    {"Emission", "RGB", "Emitted radiance I_E of surfaces in W/(m² sr)", kSurfaceMethods, true},
+    {"IndexOB", "X", "The object's index", "*", false},
+    {"IndexMA", "X", "The material's index", "*", false},
+    {"Shadow", "RGB", "The share of the light of all lamps that reaches the surface; 1 where nothing is seen",
+     kSurfaceMethods, true},
+    {"SampleCount", "X", "Samples taken in the pixel", "*", false},
 };
 
 uint32_t channel_count(PassId pass) {

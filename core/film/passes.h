@@ -6,6 +6,9 @@
 
 namespace trp {
 
+// The methods that see surfaces, for the tables of passes and settings; the others draw edges.
+inline constexpr char kSurfaceMethods[] = "visible_surface flat gouraud phong ray_casting";
+
 enum PassId : uint32_t {
     kCombined,
     kDepth,
@@ -25,7 +28,8 @@ struct Pass {
     const char* name;
     const char* channels;
     const char* description;
-    bool averaged;  // over the samples of a pixel; else the first sample's value
+    const char* methods;  // that give it, with a space between; "*": all
+    bool averaged;        // over the samples of a pixel; else the first sample's value
 };
 
 extern const Pass kPasses[kPassCount];

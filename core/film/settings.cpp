@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "film/passes.h"
 
 namespace trp {
 namespace {
@@ -13,39 +14,45 @@ const char* const kSpeculars[] = {"none", "phong", "blinn", nullptr};
 const char* const kNormals[] = {"mesh", "averaged", nullptr};
 const char* const kFalloffs[] = {"light", "none", "linear", "quadratic", nullptr};
 const char* const kFilters[] = {"box", "gaussian", "blackman_harris", nullptr};
+const char* const kLineColors[] = {"line", "object", "material", nullptr};
+const char* const kHidden[] = {"none", "faint", "dashed", nullptr};
+
+constexpr const char kLineMethods[] = "wireframe hidden_line";
+
+Vec3 color_of(const double* v) {
+    return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+}
 
 }  // namespace
 
 const SettingRow kSettings[] = {
     {TRP_TYPE_INT, "samples", "Samples",
      "Rays through each pixel; in the rasterizer, samples of large lights in each pixel", "", "16", 1, 65536, nullptr,
-     "*", "", [](Settings& s, const double* v) { s.samples = static_cast<uint32_t>(*v); }},
-    {TRP_TYPE_INT, "seed", "Seed", "Another seed gives other noise", "", "0", 0, 2147483647, nullptr, "*", "",
-     [](Settings& s, const double* v) { s.seed = static_cast<uint32_t>(*v); }},
+     kSurfaceMethods, "", [](Settings& s, const double* v) { s.samples = static_cast<uint32_t>(*v); }},
+    {TRP_TYPE_INT, "seed", "Seed", "Another seed gives other noise", "", "0", 0, 2147483647, nullptr, kSurfaceMethods,
+     "", [](Settings& s, const double* v) { s.seed = static_cast<uint32_t>(*v); }},
     {TRP_TYPE_INT, "threads", "Threads", "Threads that work; 0 uses every core", "", "0", 0, 1024, nullptr, "*", "",
      [](Settings& s, const double* v) { s.threads = static_cast<uint32_t>(*v); }},
     {TRP_TYPE_BOOL, "shadows", "Shadows",
      "Lights are blocked by what stands in their way; the classic methods of the rasterizer have none unless asked", "",
-     "on", 0, 1, nullptr, "*", "visible_surface=off flat=off gouraud=off phong=off",
+     "on", 0, 1, nullptr, kSurfaceMethods, "visible_surface=off flat=off gouraud=off phong=off",
      [](Settings& s, const double* v) { s.illumination.shadows = *v != 0; }},
     {TRP_TYPE_ENUM, "shading.specular", "Specular",
      "The highlight of lights (not of the world): none, Phong's (V·R)^n, or Blinn's (N·H)^n, which is about twice as "
      "wide for the same n",
-     "", "phong", 0, 0, kSpeculars, "*", "",
+     "", "phong", 0, 0, kSpeculars, kSurfaceMethods, "",
      [](Settings& s, const double* v) { s.illumination.specular = static_cast<Specular>(*v); }},
     {TRP_TYPE_COLOR, "shading.ambient", "Ambient light",
      "I_A, which reaches every surface from everywhere; the world's own light is sampled and needs none", "W/(m² sr)",
-     "0,0,0", 0, 1e6, nullptr, "*", "",
-     [](Settings& s, const double* v) {
-         s.illumination.ambient = Vec3(static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]));
-     }},
+     "0,0,0", 0, 1e6, nullptr, kSurfaceMethods, "",
+     [](Settings& s, const double* v) { s.illumination.ambient = color_of(v); }},
     {TRP_TYPE_ENUM, "shading.normals", "Normals",
-     "The mesh's own normals, or averages of the faces around each position", "", "mesh", 0, 0, kNormals, "*", "",
-     [](Settings& s, const double* v) { s.normals = static_cast<NormalChoice>(*v); }},
+     "The mesh's own normals, or averages of the faces around each position", "", "mesh", 0, 0, kNormals,
+     kSurfaceMethods, "", [](Settings& s, const double* v) { s.normals = static_cast<NormalChoice>(*v); }},
     {TRP_TYPE_ENUM, "shading.falloff", "Falloff",
      "How light fades with distance: each light's own way, not at all, with distance, or with its square; all agree at "
      "one metre",
-     "", "light", 0, 0, kFalloffs, "*", "",
+     "", "light", 0, 0, kFalloffs, kSurfaceMethods, "",
      [](Settings& s, const double* v) {
          constexpr int32_t kOf[] = {-1, TRP_FALLOFF_CONSTANT, TRP_FALLOFF_LINEAR, TRP_FALLOFF_PHYSICAL};
          s.illumination.falloff = kOf[static_cast<int>(*v)];
@@ -64,6 +71,44 @@ const SettingRow kSettings[] = {
      "Samples of each pixel for smooth edges; 1 sees what lies at the pixel's centre", "", "8", 1, 32, nullptr,
      "visible_surface flat gouraud phong", "",
      [](Settings& s, const double* v) { s.raster_samples = static_cast<uint32_t>(*v); }},
+    {TRP_TYPE_FLOAT, "lines.width", "Width", "Width of the lines", "pixels", "1.5", 0.01, 64, nullptr, kLineMethods, "",
+     [](Settings& s, const double* v) { s.lines.width = static_cast<float>(*v); }},
+    {TRP_TYPE_ENUM, "lines.color_by", "Colour by",
+     "What gives a line its colour: the one line colour, the object's own (viewport) colour, or the diffuse colour of "
+     "its face's material",
+     "", "line", 0, 0, kLineColors, kLineMethods, "",
+     [](Settings& s, const double* v) { s.lines.color_by = static_cast<LineSettings::ColorBy>(*v); }},
+    {TRP_TYPE_COLOR, "lines.color", "Line", "Colour of all lines", "", "0,0,0", 0, 1e6, nullptr, kLineMethods, "",
+     [](Settings& s, const double* v) { s.lines.color = color_of(v); }},
+    {TRP_TYPE_COLOR, "lines.paper", "Paper", "Colour behind the lines", "", "1,1,1", 0, 1e6, nullptr, kLineMethods, "",
+     [](Settings& s, const double* v) { s.lines.paper = color_of(v); }},
+    {TRP_TYPE_FLOAT, "lines.depth_cue", "Depth cue",
+     "How far the farthest lines have faded into the paper: 0 not at all, 1 wholly", "", "0", 0, 1, nullptr,
+     kLineMethods, "", [](Settings& s, const double* v) { s.lines.depth_cue = static_cast<float>(*v); }},
+    {TRP_TYPE_ENUM, "lines.hidden", "Hidden parts", "How parts of lines are drawn that lie behind a face", "", "none",
+     0, 0, kHidden, "hidden_line", "",
+     [](Settings& s, const double* v) { s.lines.hidden = static_cast<LineSettings::Hidden>(*v); }},
+    {TRP_TYPE_BOOL, "lines.all", "All edges", "Draw every edge of the meshes; off: the kinds chosen below", "", "on", 0,
+     1, nullptr, kLineMethods, "", [](Settings& s, const double* v) { s.lines.all = *v != 0; }},
+    {TRP_TYPE_BOOL, "lines.silhouettes", "Silhouettes",
+     "Edges between a face that is seen from the front and one that "
+     "is seen from behind",
+     "", "on", 0, 1, nullptr, kLineMethods, "", [](Settings& s, const double* v) { s.lines.silhouettes = *v != 0; }},
+    {TRP_TYPE_BOOL, "lines.borders", "Borders",
+     "Edges that do not have two faces: where a surface ends, and loose edges", "", "on", 0, 1, nullptr, kLineMethods,
+     "", [](Settings& s, const double* v) { s.lines.borders = *v != 0; }},
+    {TRP_TYPE_BOOL, "lines.creases", "Creases",
+     "Edges whose faces are turned against each other by more than the crease "
+     "angle",
+     "", "on", 0, 1, nullptr, kLineMethods, "", [](Settings& s, const double* v) { s.lines.creases = *v != 0; }},
+    {TRP_TYPE_FLOAT, "lines.crease_angle", "Crease angle",
+     "The least angle between the normals of a crease's faces; 0.5236 is 30 degrees", "radians", "0.5236", 0,
+     3.14159274, nullptr, kLineMethods, "",
+     [](Settings& s, const double* v) { s.lines.crease_angle = static_cast<float>(*v); }},
+    {TRP_TYPE_BOOL, "lines.material_borders", "Material borders", "Edges between faces of different materials", "",
+     "on", 0, 1, nullptr, kLineMethods, "", [](Settings& s, const double* v) { s.lines.material_borders = *v != 0; }},
+    {TRP_TYPE_BOOL, "lines.marked", "Marked edges", "Edges with a Freestyle mark", "", "on", 0, 1, nullptr,
+     kLineMethods, "", [](Settings& s, const double* v) { s.lines.marked = *v != 0; }},
 };
 const uint32_t kSettingCount = sizeof kSettings / sizeof kSettings[0];
 

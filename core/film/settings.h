@@ -8,6 +8,19 @@
 
 namespace trp {
 
+// How edges are drawn, and which.
+struct LineSettings {
+    enum class ColorBy { line, object, material };
+    enum class Hidden { none, faint, dashed };
+    float width = 1.5f;  // pixels
+    ColorBy color_by = ColorBy::line;
+    Vec3 color{0, 0, 0}, paper{1, 1, 1};
+    float depth_cue = 0;  // the share of the paper in the farthest lines
+    Hidden hidden = Hidden::none;
+    bool all = true, silhouettes = true, borders = true, creases = true, material_borders = true, marked = true;
+    float crease_angle = 0.5235988f;  // radians
+};
+
 struct Settings {
     uint32_t samples = 16;
     uint32_t seed = 0;
@@ -19,6 +32,7 @@ struct Settings {
     bool transparent = false;
     uint32_t tile_size = 64;
     uint32_t raster_samples = 8;
+    LineSettings lines;
 };
 
 struct SettingRow {

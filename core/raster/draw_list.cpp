@@ -32,6 +32,7 @@ bool bound(const FilmTransform& m, const Projection& projection, const Bounds& b
     const float sides[2] = {static_cast<float>(projection.width()), static_cast<float>(projection.height())};
     out.nearness = projection.nearness(std::max(nearest, projection.clip_start()));
     if (out.nearness < projection.farthest()) return false;
+    out.farness = projection.nearness(farthest);
     int32_t* const begins[2] = {&out.x0, &out.y0};
     int32_t* const ends[2] = {&out.x1, &out.y1};
     for (int k = 0; k < 2; ++k) {
@@ -46,16 +47,22 @@ bool bound(const FilmTransform& m, const Projection& projection, const Bounds& b
 
 }  // namespace
 
-DrawList make_draw_list(const Snapshot& snapshot, const Projection& projection, int32_t reach) {
+DrawList make_draw_list(const Snapshot& snapshot, const Projection& projection, Primitives primitives, int32_t reach) {
     DrawList list;
-    list.transforms.resize(snapshot.surfaces.size());
-    list.sets.resize(snapshot.surfaces.size());
     for (uint32_t slot = 0; slot < snapshot.surfaces.size(); ++slot) {
-        const PlacedSurface& surface = snapshot.surfaces[slot];
-        if (!surface.mesh || !(snapshot.rays->placement(slot)->mask & kSeenByCamera)) continue;
+        const bool seen = snapshot.surfaces[slot].mesh && (snapshot.rays->placement(slot)->mask & kSeenByCamera);
+        list.surfaces.push_back(seen ? &snapshot.surfaces[slot] : nullptr);
+    }
+    for (const PlacedSurface& wire : snapshot.wires) list.surfaces.push_back(&wire);
+    list.transforms.resize(list.surfaces.size());
+    list.sets.resize(list.surfaces.size());
+    for (uint32_t slot = 0; slot < list.surfaces.size(); ++slot) {
+        if (!list.surfaces[slot]) continue;
+        const PlacedSurface& surface = *list.surfaces[slot];
         list.transforms[slot] = projection.transform(surface.baked ? Affine{} : surface.world_from_object);
         const FilmTransform of_object = projection.transform(surface.world_from_object);
-        list.sets[slot] = &surface.surface->clusters();
+        list.sets[slot] =
+            primitives == Primitives::edges ? &surface.surface->edges().clusters : &surface.surface->clusters();
         const std::vector<Cluster>& clusters = list.sets[slot]->clusters;
         const size_t begin = list.clusters.size();
         list.clusters.resize(begin + clusters.size());
@@ -72,7 +79,7 @@ DrawList make_draw_list(const Snapshot& snapshot, const Projection& projection, 
                             list.clusters.end());
     }
     if (list.clusters.size() >= (uint64_t{1} << 31) / Cluster::kMostPrimitives)
-        fail(TRP_ERROR_MEMORY, "{} groups of triangles are before the camera; at most {} can be drawn",
+        fail(TRP_ERROR_MEMORY, "{} groups of triangles or edges are before the camera; at most {} can be drawn",
              list.clusters.size(), (uint64_t{1} << 31) / Cluster::kMostPrimitives);
     tbb::parallel_sort(list.clusters.begin(), list.clusters.end(), [](const DrawnCluster& a, const DrawnCluster& b) {
         return std::tuple(-a.nearness, a.slot, a.cluster) < std::tuple(-b.nearness, b.slot, b.cluster);

@@ -78,11 +78,6 @@ HWY_INLINE void draw_packet(const Setup& t, const PacketSteps& steps, const Visi
     }
 }
 
-size_t packet_at(const VisibilityTile::Buffers& tile, int32_t i, int32_t j) {
-    const auto x = static_cast<uint32_t>(i), y = static_cast<uint32_t>(j);
-    return (size_t{y >> 4} * tile.blocks_across + (x >> 4)) * kBatch + ((y >> 2) & 3) * 64 + ((x >> 2) & 3) * 16;
-}
-
 // The setup, whose values are those of pixel (i, j), over the pixels [i, i1] by [j, j1].
 void draw_small(const Setup& at_corner, int32_t i, int32_t j, int32_t i1, int32_t j1,
                 const VisibilityTile::Buffers& tile) {
@@ -95,7 +90,8 @@ void draw_small(const Setup& at_corner, int32_t i, int32_t j, int32_t i1, int32_
         for (int32_t x = begin_i; x <= end_i; x += 4) {
             for (int k = 0; k < 3; ++k) t.edge[k] = at_corner.edge[k] + t.a[k] * (x - i) + t.b[k] * (y - j);
             t.nearness = at_corner.nearness + t.dx * static_cast<float>(x - i) + t.dy * static_cast<float>(y - j);
-            draw_packet(t, steps, tile, packet_at(tile, x, y));
+            draw_packet(t, steps, tile,
+                        tile_lane(tile.blocks_across, static_cast<uint32_t>(x), static_cast<uint32_t>(y)));
         }
 }
 
@@ -149,7 +145,8 @@ void draw_large(GridPoint p0, GridPoint p1, GridPoint p2, const std::array<doubl
                             static_cast<int32_t>(std::clamp(constant[k] + t.a[k] * i + t.b[k] * j, -kFar, kFar));
                     t.nearness = static_cast<float>(plane[0] + plane[1] * static_cast<double>(i) +
                                                     plane[2] * static_cast<double>(j));
-                    draw_packet(t, steps, tile, packet_at(tile, static_cast<int32_t>(i), static_cast<int32_t>(j)));
+                    draw_packet(t, steps, tile,
+                                tile_lane(tile.blocks_across, static_cast<uint32_t>(i), static_cast<uint32_t>(j)));
                 }
         }
 }

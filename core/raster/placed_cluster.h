@@ -3,7 +3,8 @@
 
 #include <array>
 
-#include "raster/draw_list.h"
+#include "geometry/clusters.h"
+#include "raster/projection.h"
 
 namespace trp {
 

@@ -34,4 +34,13 @@ FilmTransform Projection::transform(const Affine& world_from_object) const {
     return out;
 }
 
+View make_raster_view(const Snapshot& snapshot, const Window& window, const char* method) {
+    if (!snapshot.camera) fail(TRP_ERROR_STATE, "the scene has no camera to render from");
+    const View view = make_view(*snapshot.camera, snapshot.origin, window.width, window.height);
+    if (view.aperture_radius > 0)
+        fail(TRP_ERROR_STATE, "{} cannot show depth of field: use ray_casting, or a camera without an aperture",
+             method);
+    return view;
+}
+
 }  // namespace trp

@@ -7,7 +7,9 @@
 #include <cstdint>
 
 #include "base/vec.h"
+#include "film/film.h"
 #include "film/view.h"
+#include "shading/snapshot.h"
 
 namespace trp {
 
@@ -40,5 +42,9 @@ class Projection {
     uint32_t width_, height_;
     float clip_start_, clip_end_;
 };
+
+// The scene's camera for a film of that size. Throws Error where there is none, or it has a lens that `method` cannot
+// show.
+View make_raster_view(const Snapshot& snapshot, const Window& window, const char* method);
 
 }  // namespace trp

@@ -49,8 +49,8 @@ struct Rasterizer {
     Evaluation evaluation;
     View view;
     Projection projection;
-    DrawList list;
-    TileLists tiles;
+    DrawList list{};
+    TileLists tiles{};
     std::vector<SampleOffset> pattern;
     uint32_t light_samples;  // of each shaded point
     Illumination illumination;
@@ -111,8 +111,9 @@ void Rasterizer::shade(uint32_t block_x, uint32_t block_y, uint32_t sample, int 
 
 // One layer of a sample at a block. Returns whether something may be seen behind it.
 bool Rasterizer::block(uint32_t place, const SampleOffset& offset, uint32_t sample, int layer, Workspace& w) const {
-    const uint32_t x = w.visibility.x0() + place % w.visibility.blocks_across() * kBlockSide,
-                   y = w.visibility.y0() + place / w.visibility.blocks_across() * kBlockSide;
+    const uint32_t across = w.visibility.blocks_across(),
+                   x = static_cast<uint32_t>(w.visibility.x0()) + place % across * kBlockSide,
+                   y = static_cast<uint32_t>(w.visibility.y0()) + place / across * kBlockSide;
     const uint32_t* keys = w.visibility.keys(place);
     Lanes whole;
     std::fill_n(whole, kBatch, 1.0f);
@@ -167,7 +168,7 @@ void Rasterizer::sample(const TileWork& work, uint32_t number, Workspace& w) con
         w.visibility.begin(projection, offset.x, offset.y, layer > 0);
         for (const uint32_t cluster : tiles.of(work)) {
             if (*job.cancelled) return;
-            w.visibility.draw(snapshot, projection, list, cluster);
+            w.visibility.draw(projection, list, cluster);
         }
         const auto drawn = Clock::now();
         any_left = false;
@@ -189,7 +190,8 @@ void Rasterizer::sample(const TileWork& work, uint32_t number, Workspace& w) con
 void Rasterizer::tile(const TileWork& work) const {
     std::unique_ptr<Workspace>& w = workspaces.local();
     if (!w) w = std::make_unique<Workspace>();
-    w->visibility.place(work.block_x0 * kBlockSide, work.block_y0 * kBlockSide, work.block_x1 - work.block_x0,
+    w->visibility.place(static_cast<int32_t>(work.block_x0 * kBlockSide),
+                        static_cast<int32_t>(work.block_y0 * kBlockSide), work.block_x1 - work.block_x0,
                         work.block_y1 - work.block_y0);
     for (uint32_t s = work.first_sample; s < work.end_sample; ++s) sample(work, s, *w);
 }
@@ -212,12 +214,8 @@ void Rasterizer::shade_all_vertices() {
 
 bool rasterize(RenderJob& job, const RenderEvents& events, Evaluation evaluation, const char* method) {
     const Snapshot& snapshot = *job.snapshot;
-    if (!snapshot.camera) fail(TRP_ERROR_STATE, "the scene has no camera to render from");
     const Window& window = job.film->window();
-    const View view = make_view(*snapshot.camera, snapshot.origin, window.width, window.height);
-    if (view.aperture_radius > 0)
-        fail(TRP_ERROR_STATE, "{} cannot show depth of field: use ray_casting, or a camera without an aperture",
-             method);
+    const View view = make_raster_view(snapshot, window, method);
     RenderJob tiled = job;
     tiled.settings.samples = job.settings.raster_samples;
     tiled.settings.tile_size = std::max(job.settings.tile_size, kTileSide);
@@ -252,7 +250,7 @@ bool rasterize(RenderJob& job, const RenderEvents& events, Evaluation evaluation
     return run_tiles(
         tiled, events, [&](const TileWork& work) { rasterizer.tile(work); },
         [&] {
-            rasterizer.list = make_draw_list(snapshot, projection, reach_of(pattern));
+            rasterizer.list = make_draw_list(snapshot, projection, Primitives::triangles, reach_of(pattern));
             rasterizer.tiles = TileLists(rasterizer.list, window, tiled.settings.tile_size);
             if (evaluation == Evaluation::vertex) rasterizer.shade_all_vertices();
         });

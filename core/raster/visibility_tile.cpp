@@ -1,12 +1,13 @@
 #include "raster/visibility_tile.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "raster/draw_triangles.h"
 
 namespace trp {
 
-void VisibilityTile::place(uint32_t x0, uint32_t y0, uint32_t blocks_across, uint32_t blocks_up) {
+void VisibilityTile::place(int32_t x0, int32_t y0, uint32_t blocks_across, uint32_t blocks_up) {
     x0_ = x0;
     y0_ = y0;
     blocks_across_ = blocks_across;
@@ -34,9 +35,7 @@ void VisibilityTile::begin(const Projection& projection, int32_t offset_x, int32
     std::fill_n(nearness_.get(), pixels(), projection.farthest());
     std::fill(farthest_.begin(), farthest_.end(), projection.farthest());
     std::fill(touched_.begin(), touched_.end(), uint8_t{0});
-    const auto corner = [](uint32_t pixel, int32_t offset) {
-        return static_cast<int32_t>(pixel) * kSubpixels + kSubpixels / 2 + offset;
-    };
+    const auto corner = [](int32_t pixel, int32_t offset) { return pixel * kSubpixels + kSubpixels / 2 + offset; };
     buffers_ = {keys_.get(),
                 nearness_.get(),
                 behind ? last_keys_.get() : nullptr,
@@ -50,7 +49,7 @@ void VisibilityTile::begin(const Projection& projection, int32_t offset_x, int32
 
 // The blocks that the cluster may cover: [0] to [1] across, [2] to [3] up.
 bool VisibilityTile::block_range(const DrawnCluster& c, uint32_t range[4]) const {
-    const auto reach = [](int32_t begin, int32_t end, uint32_t first, uint32_t blocks, uint32_t* out) {
+    const auto reach = [](int32_t begin, int32_t end, int32_t first, uint32_t blocks, uint32_t* out) {
         const int64_t low = int64_t{begin} - first, high = int64_t{end} - first;
         if (high <= 0 || low >= int64_t{blocks} * kBlockSide) return false;
         out[0] = static_cast<uint32_t>(std::max<int64_t>(low, 0) / kBlockSide);
@@ -60,7 +59,7 @@ bool VisibilityTile::block_range(const DrawnCluster& c, uint32_t range[4]) const
     return reach(c.x0, c.x1, x0_, blocks_across_, range) && reach(c.y0, c.y1, y0_, blocks_up_, range + 2);
 }
 
-bool VisibilityTile::hidden(const DrawnCluster& cluster) {
+bool VisibilityTile::hidden(const DrawnCluster& cluster, float nearness) {
     uint32_t range[4];
     if (!block_range(cluster, range)) return true;
     for (uint32_t y = range[2]; y <= range[3]; ++y)
@@ -70,9 +69,13 @@ bool VisibilityTile::hidden(const DrawnCluster& cluster) {
                 farthest_[block] = least_nearness(&nearness_[block * kBatch]);
                 touched_[block] = 0;
             }
-            if (cluster.nearness > farthest_[block]) return false;
+            if (nearness > farthest_[block]) return false;
         }
     return true;
+}
+
+bool VisibilityTile::hides(const DrawnCluster& cluster) {
+    return hidden(cluster, cluster.nearness + 1e-3f * std::abs(cluster.nearness));
 }
 
 void VisibilityTile::touch(const DrawnCluster& cluster) {
@@ -83,13 +86,10 @@ void VisibilityTile::touch(const DrawnCluster& cluster) {
                   &touched_[size_t{y} * blocks_across_ + range[1]] + 1, uint8_t{1});
 }
 
-void VisibilityTile::draw(const Snapshot& snapshot, const Projection& projection, const DrawList& list,
-                          uint32_t number) {
+void VisibilityTile::draw(const Projection& projection, const DrawList& list, uint32_t number) {
     const DrawnCluster& cluster = list.clusters[number];
-    if (hidden(cluster)) return;
-    draw_triangles({snapshot.surfaces[cluster.slot].positions, *list.sets[cluster.slot], cluster.cluster,
-                    list.transforms[cluster.slot], projection},
-                   number * Cluster::kMostPrimitives, buffers_);
+    if (hidden(cluster, cluster.nearness)) return;
+    draw_triangles(list.placed(cluster, projection), number * Cluster::kMostPrimitives, buffers_);
     touch(cluster);
 }
 

@@ -35,9 +35,11 @@ struct PlacedSurface {
     uint32_t face(uint32_t triangle) const { return faces ? faces[triangle] : triangle; }
     uint32_t corner(uint32_t triangle, int k) const { return corners ? corners[3 * triangle + k] : 3 * triangle + k; }
     uint32_t material(uint32_t triangle) const {
+        return face_materials ? face_material(face(triangle)) : slot_materials[0];
+    }
+    uint32_t face_material(uint32_t face) const {
         if (!face_materials) return slot_materials[0];
-        const uint32_t slot = face_materials[face(triangle)];
-        return slot_materials[std::min<size_t>(slot, slot_materials.size() - 1)];
+        return slot_materials[std::min<size_t>(face_materials[face], slot_materials.size() - 1)];
     }
     Vec3 world_position(uint32_t vertex) const {
         return baked ? positions[vertex] : world_from_object.point(positions[vertex]);

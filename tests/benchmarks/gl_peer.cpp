@@ -46,6 +46,12 @@ void main() {
 }
 )";
 
+const char* const kFlatShader = R"(#version 450 core
+layout(location = 9) uniform float brightness;
+out vec4 color;
+void main() { color = vec4(brightness); }
+)";
+
 void require(bool true_, const char* what) {
     if (!true_) throw std::runtime_error(std::string("OpenGL: ") + what);
 }
@@ -128,7 +134,7 @@ struct GlPeer::State {
     EGLDisplay display = EGL_NO_DISPLAY;
     EGLContext context = EGL_NO_CONTEXT;
     uint32_t width, height, samples;
-    GLuint drawn = 0, resolved = 0;
+    GLuint drawn = 0, resolved = 0, shaded = 0, flat = 0;
     GLsizei indices = 0;
 };
 
@@ -166,16 +172,21 @@ GlPeer::GlPeer(const ClassicScene& scene, uint32_t width, uint32_t height, uint3
     glEnable(GL_DEPTH_TEST);
     glEnable(GL_CULL_FACE);
 
-    const GLuint program = glCreateProgram();
-    glAttachShader(program, compile(GL_VERTEX_SHADER, kVertexShader));
-    glAttachShader(program, compile(GL_FRAGMENT_SHADER, kFragmentShader));
-    glLinkProgram(program);
-    GLint good = 0;
-    glGetProgramiv(program, GL_LINK_STATUS, &good);
-    require(good, "the shaders do not fit together");
-    glUseProgram(program);
     const auto matrix = clip_from_world(scene, static_cast<float>(width) / static_cast<float>(height));
-    glUniformMatrix4fv(0, 1, GL_FALSE, matrix.data());
+    const auto link = [&](const char* fragments) {
+        const GLuint program = glCreateProgram();
+        glAttachShader(program, compile(GL_VERTEX_SHADER, kVertexShader));
+        glAttachShader(program, compile(GL_FRAGMENT_SHADER, fragments));
+        glLinkProgram(program);
+        GLint good = 0;
+        glGetProgramiv(program, GL_LINK_STATUS, &good);
+        require(good, "the shaders do not fit together");
+        glUseProgram(program);
+        glUniformMatrix4fv(0, 1, GL_FALSE, matrix.data());
+        return program;
+    };
+    s.flat = link(kFlatShader);
+    s.shaded = link(kFragmentShader);
     glUniform3fv(1, 1, scene.eye.data());
     glUniform3fv(2, 2, scene.light_positions[0].data());
     glUniform3fv(4, 2, scene.light_colors[0].data());
@@ -208,12 +219,31 @@ void GlPeer::set_mesh(const IndexedMesh& mesh) {
     state_->indices = static_cast<GLsizei>(mesh.indices.size());
 }
 
-void GlPeer::draw() {
+void GlPeer::draw(Drawing drawing) {
     const State& s = *state_;
     glBindFramebuffer(GL_FRAMEBUFFER, s.drawn);
     glClearColor(0, 0, 0, 1);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-    glDrawElements(GL_TRIANGLES, s.indices, GL_UNSIGNED_INT, nullptr);
+    const auto triangles = [&](GLenum mode, float brightness) {
+        glPolygonMode(GL_FRONT_AND_BACK, mode);
+        glUniform1f(9, brightness);
+        glDrawElements(GL_TRIANGLES, s.indices, GL_UNSIGNED_INT, nullptr);
+    };
+    if (drawing == Drawing::phong) {
+        glUseProgram(s.shaded);
+        glDrawElements(GL_TRIANGLES, s.indices, GL_UNSIGNED_INT, nullptr);
+    } else {
+        glUseProgram(s.flat);
+        if (drawing == Drawing::hidden_line) {
+            glEnable(GL_POLYGON_OFFSET_FILL);
+            glPolygonOffset(1, 1);
+            triangles(GL_FILL, 0);
+        } else {
+            glDisable(GL_CULL_FACE);
+            glDisable(GL_DEPTH_TEST);
+        }
+        triangles(GL_LINE, 1);
+    }
     if (s.resolved) {
         const auto w = static_cast<GLint>(s.width), h = static_cast<GLint>(s.height);
         glBindFramebuffer(GL_DRAW_FRAMEBUFFER, s.resolved);

@@ -32,6 +32,8 @@ struct ClassicScene {
 
 class GlPeer {
   public:
+    enum class Drawing { phong, wireframe, hidden_line };
+
     // Draws with so many threads (0 to 32, LP_NUM_THREADS). Throws where there is no llvmpipe.
     GlPeer(const ClassicScene& scene, uint32_t width, uint32_t height, uint32_t samples, uint32_t threads);
     ~GlPeer();
@@ -39,8 +41,10 @@ class GlPeer {
     GlPeer& operator=(const GlPeer&) = delete;
 
     void set_mesh(const IndexedMesh& mesh);
-    // A whole frame with Phong's shading in each pixel, back faces left out; returns when it is done.
-    void draw();
+    // A whole frame; returns when it is done. With Phong's shading in each pixel, back faces left out; or white lines
+    // on black, of one pixel and not smoothed, the triangles' edges and with them the diagonals: all of them, or in two
+    // passes, back faces left out, over black faces that hide what lies behind.
+    void draw(Drawing drawing);
     // RGBA, 8 bits, row 0 at the bottom.
     std::vector<uint8_t> read() const;
     std::string renderer() const;

@@ -16,7 +16,7 @@ using triptych::cli::check;
 namespace {
 
 struct Options {
-    std::string shape = "sphere", name;
+    std::string shape = "sphere", method = "phong", name;
     uint32_t side = 289, width = 1920, height = 1080, samples = 1, threads = 2, repeats = 5;
     double goal = kNone;
 };
@@ -99,7 +99,7 @@ void measure(const Options& options) {
     const ClassicScene classic;
     const IndexedMesh mesh = options.shape == "layers" ? four_layers(classic) : cube_sphere(options.side);
     const Scene scene = make_scene(classic, mesh, options.threads);
-    const auto render = triptych::cli::make_render(scene.get(), "phong");
+    const auto render = triptych::cli::make_render(scene.get(), options.method);
     check(trp_render_set_film(render.get(), options.width, options.height, 0, 0, 0, 0));
     const std::string ambient = std::to_string(classic.ambient);
     for (const auto& [name, value] : std::initializer_list<std::pair<const char*, std::string>>{
@@ -108,15 +108,21 @@ void measure(const Options& options) {
              {"film.filter", "box"},
              {"film.filter_width", "1"},
              {"shading.falloff", "none"},
+             {"lines.width", "1"},
+             {"lines.color", "1,1,1"},
+             {"lines.paper", "0,0,0"},
              {"shading.ambient", ambient + "," + ambient + "," + ambient}})
         check(trp_render_set(render.get(), name, value.c_str()));
     GlPeer peer(classic, options.width, options.height, options.samples, options.threads);
     peer.set_mesh(mesh);
+    const GlPeer::Drawing drawing = options.method == "wireframe"     ? GlPeer::Drawing::wireframe
+                                    : options.method == "hidden_line" ? GlPeer::Drawing::hidden_line
+                                                                      : GlPeer::Drawing::phong;
     std::vector<Cost> ours, theirs;
     std::vector<double> visibility, shading;
     for (uint32_t i = 0; i < options.repeats + 2; ++i) {
         const Cost mine = cost_of([&] { check(trp_render_run(render.get(), nullptr)); });
-        const Cost others = cost_of([&] { peer.draw(); });
+        const Cost others = cost_of([&] { peer.draw(drawing); });
         if (i < 2) continue;  // shaders are compiled, clusters made
         ours.push_back(mine);
         theirs.push_back(others);
@@ -132,6 +138,7 @@ void measure(const Options& options) {
     print_value(name + ".visibility", median(visibility), "thread s");
     print_value(name + ".shading", median(shading), "thread s");
 
+    if (drawing != GlPeer::Drawing::phong) return;  // the peer's lines are not smoothed: their pictures differ
     std::vector<float> pixels(size_t{4} * options.width * options.height);
     check(trp_render_read(render.get(), "Combined", 0, 0, options.width, options.height, pixels.data(), pixels.size()));
     const std::vector<uint8_t> drawn = peer.read();
@@ -159,6 +166,8 @@ int main(int argc, char** argv) {
     app.add_option("--name", options.name, "Name of the figures")->required();
     app.add_option("--shape", options.shape, "sphere, or layers: four squares that fill the view")
         ->check(CLI::IsMember({"sphere", "layers"}));
+    app.add_option("--method", options.method, "phong, wireframe or hidden_line")
+        ->check(CLI::IsMember({"phong", "wireframe", "hidden_line"}));
     app.add_option("--side", options.side, "Quads along a sixth of the sphere")->capture_default_str();
     app.add_option("--width", options.width, "Pixels")->capture_default_str();
     app.add_option("--height", options.height, "Pixels")->capture_default_str();

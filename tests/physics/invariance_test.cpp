@@ -85,7 +85,8 @@ void build(Scene& scene, const Options& o) {
 }
 
 constexpr uint32_t kWidth = 150, kHeight = 100;
-const char* const kMethods[] = {"ray_casting", "visible_surface", "flat", "gouraud", "phong"};
+const char* const kMethods[] = {"ray_casting", "wireframe", "hidden_line", "visible_surface",
+                                "flat",        "gouraud",   "phong"};
 
 Image picture(const Options& o, const Settings& settings) {
     Scene scene;
@@ -119,10 +120,8 @@ TEST(Invariance, ThreadsAndTilesGiveTheSameBits) {
         Image first;
         for (const char* threads : {"1", "2", "5"})
             for (const char* tile : {"16", "64", "1000"}) {
-                const Settings settings = {{"samples", "5"},
-                                           {"raster.samples", "4"},
-                                           {"shadows", "on"},
-                                           {"threads", threads},
+                const Settings settings = {{"samples", "5"},           {"raster.samples", "4"},    {"shadows", "on"},
+                                           {"lines.hidden", "dashed"}, {"lines.depth_cue", "0.5"}, {"threads", threads},
                                            {"film.tile_size", tile}};
                 const Image image = Render(scene, scale * kWidth, scale * kHeight, settings, {}, method).run().read();
                 if (first.values.empty()) first = image;
@@ -135,7 +134,7 @@ TEST(Invariance, AWindowIsAPieceOfThePicture) {
     Scene scene;
     build(scene, {});
     scene.commit();
-    const Settings settings = {{"samples", "3"}, {"raster.samples", "2"}};
+    const Settings settings = {{"samples", "3"}, {"raster.samples", "2"}, {"lines.hidden", "faint"}};
     for (const char* method : kMethods) {
         const Image whole = Render(scene, kWidth, kHeight, settings, {}, method).run().read();
         for (const auto& [x, y, w, h] :
