@@ -9,16 +9,19 @@
 #include <array>
 #include <cmath>
 
+#include "raster/cluster_vertices.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raster/draw_triangles.cpp"
 #include "hwy/foreach_target.h"
 
 #include "hwy/highway.h"
-#include "raster/cluster_vertices-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace trp::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+
+constexpr int kMostLanes = HWY_MAX_BYTES / sizeof(float);
 
 // A triangle less than this wide and high has edge functions within 32 bits about its corner.
 constexpr int32_t kSmall = 64 * kSubpixels;

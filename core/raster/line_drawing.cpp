@@ -123,7 +123,7 @@ void LineDrawing::add_runs(const DrawnLine& line, const TileReach& reach, Worksp
     uint32_t edge = 0;
     const PlacedSurface& surface = edge_of(line.key, edge);
     w.line_visibility.split(s, edges.clusters[line.key / Cluster::kMostPrimitives].slot,
-                            surface.surface->edges().edges[edge], reach, w.visibility, w.runs);
+                            surface.surface->edges().edges[edge], w.runs);
     const auto add = [&](float begin, float end, const Vec3& color) {
         w.drawn.push_back({s, begin, end, color, line.key});
     };
@@ -212,7 +212,10 @@ void LineDrawing::tile(const TileWork& work) const {
                           profile.radius};
     const auto start = Clock::now();
     w.lines.begin(across, up);
-    if (hides) see_faces(work, w.visibility);
+    if (hides) {
+        see_faces(work, w.visibility);
+        w.line_visibility.begin(reach, w.visibility);
+    }
     for (const uint32_t number : edge_tiles.of(work)) {
         if (*job.cancelled) return;
         if (hides && settings.hidden == LineSettings::Hidden::none && w.visibility.hides(edges.clusters[number]))

@@ -6,114 +6,150 @@
 namespace trp {
 namespace {
 
-constexpr uint32_t kOccluders = 1024;
-constexpr double kGrid = 1.0 / kSubpixels;
 // Surfaces that touch hide no edge of each other; relative to the depth.
 constexpr double kTouching = 1e-5;
 
-double dot(const double (&a)[3], double x, double y) {
-    return a[0] * x + a[1] * y + a[2];
-}
-
 }  // namespace
 
-LineVisibility::LineVisibility(const DrawList& list, const Projection& projection)
-    : list_(list), projection_(projection), occluders_(kOccluders) {}
+LineVisibility::LineVisibility(const DrawList& triangles, const Projection& projection)
+    : triangles_(triangles), projection_(projection), needed_by_(triangles.clusters.size(), nullptr) {}
 
-bool LineVisibility::Occluder::covers(double x, double y) const {
-    return dot(sides[0], x, y) > kGrid && dot(sides[1], x, y) > kGrid && dot(sides[2], x, y) > kGrid;
+void LineVisibility::begin(const TileReach& tile, const VisibilityTile& visibility) {
+    tile_ = tile;
+    visibility_ = &visibility;
+    for (const uint32_t number : numbers_) needed_by_[number] = nullptr;
+    numbers_.clear();
+}
+
+const LineVisibility::Needed& LineVisibility::cluster_of(uint32_t key) {
+    const uint32_t number = key / Cluster::kMostPrimitives;
+    Needed*& needed = needed_by_[number];
+    if (needed) return *needed;
+    if (numbers_.size() == memory_.size()) memory_.push_back(std::make_unique<Needed>());
+    needed = memory_[numbers_.size()].get();
+    numbers_.push_back(number);
+
+    const DrawnCluster& drawn = triangles_.clusters[number];
+    const PlacedCluster placed = triangles_.placed(drawn, projection_);
+    const Cluster& cluster = placed.cluster();
+    const auto origin = [](uint32_t pixel) { return static_cast<int32_t>(pixel) * kSubpixels + kSubpixels / 2; };
+    ClusterVertices vertices;
+    project_vertices(placed, origin(tile_.x0), origin(tile_.y0), vertices);
+    needed->slot = drawn.slot;
+    needed->primitives = &placed.set.primitives[cluster.first];
+    for (uint32_t v = 0; v < cluster.vertex_count; ++v)
+        needed->vertices[v] = {static_cast<float>(vertices.x[v]), static_cast<float>(vertices.y[v]), vertices.near[v],
+                               vertices.is_cut[v] != 0};
+    for (uint32_t k = 0; k < cluster.count; ++k)
+        for (int corner = 0; corner < 3; ++corner)
+            needed->corners[k][corner] = placed.set.corners[corner][cluster.first + k];
+    return *needed;
 }
 
 // By homogeneous edge functions, which need no clipping (Olano and Greer, "Triangle Scan Conversion Using 2D
 // Homogeneous Coordinates", 1997).
-const LineVisibility::Occluder& LineVisibility::occluder(uint32_t key) {
-    Occluder& out = occluders_[key % kOccluders];
-    if (out.key == key) return out;
-    const DrawnCluster& drawn = list_.clusters[key / Cluster::kMostPrimitives];
-    const PlacedCluster cluster = list_.placed(drawn, projection_);
-    const uint32_t k = key % Cluster::kMostPrimitives;
-    const PlacedSurface& surface = *list_.surfaces[drawn.slot];
-    out.key = key;
-    out.slot = drawn.slot;
-    out.face = surface.face(cluster.set.primitives[cluster.cluster().first + k]);
+LineVisibility::Cover LineVisibility::cover_cut(const Place& p, uint32_t key) const {
+    const PlacedCluster cluster = triangles_.placed(triangles_.clusters[key / Cluster::kMostPrimitives], projection_);
+    const double at[3] = {p.x / kSubpixels + 0.5 + tile_.x0, p.y / kSubpixels + 0.5 + tile_.y0, 1};
     FilmPoint q[3];
     double near[3];
     for (int m = 0; m < 3; ++m) {
-        q[m] = on_film(cluster.transform, cluster.positions[cluster.vertex(k, m)]);
+        q[m] = on_film(cluster.transform, cluster.positions[cluster.vertex(key % Cluster::kMostPrimitives, m)]);
         near[m] = projection_.perspective() ? 1 : -q[m][2];
         if (!projection_.perspective()) q[m][2] = 1;
     }
-    double determinant = 0;
+    double determinant = 0, sides[3], nearness = 0;
     for (int m = 0; m < 3; ++m) {
         const FilmPoint &a = q[(m + 1) % 3], &b = q[(m + 2) % 3];
+        sides[m] = 0;
         for (int r = 0; r < 3; ++r) {
             const int s = (r + 1) % 3, t = (r + 2) % 3;
-            out.sides[m][r] = a[s] * b[t] - a[t] * b[s];
+            const double product = a[s] * b[t] - a[t] * b[s];
+            sides[m] += product * at[r];
+            if (m == 0) determinant += product * q[0][r];
         }
-        if (m == 0)
-            for (int r = 0; r < 3; ++r) determinant += out.sides[0][r] * q[0][r];
+        nearness += sides[m] * near[m];
     }
-    for (int r = 0; r < 3; ++r) {
-        out.nearness[r] = 0;
-        for (int m = 0; m < 3 && determinant != 0; ++m) out.nearness[r] += out.sides[m][r] * near[m] / determinant;
-    }
-    for (auto& side : out.sides) {
-        const double length = std::hypot(side[0], side[1]) * (determinant < 0 ? -1 : 1);
-        for (double& value : side) value = determinant != 0 && length != 0 ? value / length : -1;
-    }
-    return out;
+    const double sign = determinant < 0 ? -1 : 1;
+    return {sides[0] * sign > 0 && sides[1] * sign > 0 && sides[2] * sign > 0, nearness, determinant};
 }
 
-bool LineVisibility::sees(const Place& p, const VisibilityTile& visibility) {
+LineVisibility::Cover LineVisibility::cover(const Place& p, uint32_t key) {
+    const Needed& cluster = cluster_of(key);
+    const uint8_t* const corners = cluster.corners[key % Cluster::kMostPrimitives];
+    double x[3], y[3], near[3];
+    bool is_cut = false;
+    for (int k = 0; k < 3; ++k) {
+        const Needed::Vertex& vertex = cluster.vertices[corners[k]];
+        x[k] = vertex.x - p.x;
+        y[k] = vertex.y - p.y;
+        near[k] = vertex.near;
+        is_cut |= vertex.is_cut;
+    }
+    if (is_cut) return cover_cut(p, key);
+    // Edge functions, each of the vertex across from its side.
+    const double sides[3] = {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
+    const bool covers =
+        (sides[0] > 0) & (sides[1] > 0) & (sides[2] > 0) || (sides[0] < 0) & (sides[1] < 0) & (sides[2] < 0);
+    return {covers, sides[0] * near[0] + sides[1] * near[1] + sides[2] * near[2], sides[0] + sides[1] + sides[2]};
+}
+
+bool LineVisibility::is_own(const Place& p, uint32_t key) {
+    const Needed& cluster = cluster_of(key);
+    if (cluster.slot != p.slot) return false;
+    const uint32_t face = triangles_.surfaces[p.slot]->face(cluster.primitives[key % Cluster::kMostPrimitives]);
+    return face == p.faces[0] || face == p.faces[1];
+}
+
+bool LineVisibility::sees(const Place& p) {
     const double limit = p.nearness + kTouching * std::abs(p.nearness);
-    const auto left = static_cast<int32_t>(std::floor(p.x - 0.5)), low = static_cast<int32_t>(std::floor(p.y - 0.5));
-    bool proven = false;
-    uint32_t nearest = kNothing, last = kNothing;
-    double least = 1e30;
+    const double px = p.x / kSubpixels, py = p.y / kSubpixels, left = std::floor(px), low = std::floor(py);
+    // The four pixels, the nearest first.
+    const int near_x = px - left > 0.5, near_y = py - low > 0.5;
+    uint32_t keys[4];
+    int count = 0;
     for (int k = 0; k < 4; ++k) {
-        const int32_t x = left + (k & 1), y = low + (k >> 1);
-        if (x < 0 || y < 0 || x >= static_cast<int32_t>(projection_.width()) ||
-            y >= static_cast<int32_t>(projection_.height()))
-            continue;
-        const uint32_t key = visibility.key_at(x, y);
-        const double dx = x + 0.5 - p.x, dy = y + 0.5 - p.y, distance2 = dx * dx + dy * dy;
-        if (distance2 < least) {
-            least = distance2;
-            nearest = key;
-        }
-        if (key == kNothing || key == last) continue;
-        last = key;
-        const Occluder& o = occluder(key);
-        if (o.slot == p.slot && (o.face == p.faces[0] || o.face == p.faces[1])) {
-            proven = true;
-        } else if (o.covers(p.x, p.y)) {
-            if (o.nearness_at(p.x, p.y) > limit) return false;
-            proven = true;
-        }
+        const auto x = static_cast<int32_t>(left) + (near_x ^ (k & 1)) + static_cast<int32_t>(tile_.x0),
+                   y = static_cast<int32_t>(low) + (near_y ^ (k >> 1)) + static_cast<int32_t>(tile_.y0);
+        const bool inside = x >= 0 && y >= 0 && x < static_cast<int32_t>(projection_.width()) &&
+                            y < static_cast<int32_t>(projection_.height());
+        if (inside) keys[count++] = visibility_->key_at(x, y);
     }
-    return proven || nearest == kNothing || !(occluder(nearest).nearness_at(p.x, p.y) > limit);
+    if (count == 0) return true;
+    bool covered = false, nearest_is_before = false;
+    for (int k = 0; k < count; ++k) {
+        if (keys[k] == kNothing || std::find(keys, keys + k, keys[k]) != keys + k) continue;
+        const Cover by = cover(p, keys[k]);
+        const bool before = by.is_before(limit);
+        nearest_is_before |= k == 0 && before;
+        if (!by.covers) continue;
+        if (before && !is_own(p, keys[k])) return false;
+        covered = true;
+    }
+    if (covered || !nearest_is_before) return true;
+    return std::any_of(keys, keys + count, [&](uint32_t key) { return key != kNothing && is_own(p, key); });
 }
 
-void LineVisibility::split(const Segment& s, uint32_t slot, const Edge& edge, const TileReach& tile,
-                           const VisibilityTile& visibility, std::vector<Run>& runs) {
+void LineVisibility::split(const Segment& s, uint32_t slot, const Edge& edge, std::vector<Run>& runs) {
     runs.clear();
-    const double x0 = s.x[0] + 0.5 + tile.x0, y0 = s.y[0] + 0.5 + tile.y0, dx = s.x[1] - s.x[0], dy = s.y[1] - s.y[0],
+    const double dx = s.x[1] - s.x[0], dy = s.y[1] - s.y[0],
                  dn = static_cast<double>(s.near[1]) - static_cast<double>(s.near[0]);
     const auto sees_at = [&](double t) {
-        return sees({x0 + t * dx, y0 + t * dy, s.near[0] + t * dn, slot, edge.faces}, visibility);
+        return sees(
+            {(s.x[0] + t * dx) * kSubpixels, (s.y[0] + t * dy) * kSubpixels, s.near[0] + t * dn, slot, edge.faces});
     };
-    // Points a pixel apart, whose places do not depend on the tile; those that it may show, and one more.
-    const double count = std::max(1.0, std::ceil(std::max(std::abs(dx), std::abs(dy))));
+    // Points a pixel and a half apart, whose places do not depend on the tile; those that it may show, and one more.
+    const double count = std::max(1.0, std::ceil(std::max(std::abs(dx), std::abs(dy)) / 1.5));
     double from = 0, to = 1;
     const auto clip = [&](double begin, double step, double size) {
-        const double low = -tile.reach, high = size - 1 + tile.reach;
+        const double low = -tile_.reach, high = size - 1 + tile_.reach;
         if (std::abs(step) < 1e-6) return;
         const double a = (low - begin) / step, b = (high - begin) / step;
         from = std::max(from, std::min(a, b));
         to = std::min(to, std::max(a, b));
     };
-    clip(s.x[0], dx, tile.width);
-    clip(s.y[0], dy, tile.height);
+    clip(s.x[0], dx, tile_.width);
+    clip(s.y[0], dy, tile_.height);
     if (from > to) return;
     const double first = std::max(0.0, std::floor(from * count - 0.5)),
                  last = std::min(count - 1, std::ceil(to * count));

