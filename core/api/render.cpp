@@ -1,6 +1,7 @@
 // Renders.
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "api/guard.h"
@@ -8,6 +9,7 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "film/picture_file.h"
+#include "raster/rasterizer.h"
 
 using namespace trp;
 
@@ -202,6 +204,43 @@ TrpStatus trp_render_write(const TrpRender* render, const char* path) {
         check_idle(render);
         check_pointer(path, "path");
         write_picture_file(film_of(render), path);
+        return TRP_OK;
+    });
+}
+
+TrpStatus trp_render_pick_scan_line(const TrpRender* render, uint32_t x, uint32_t y, TrpScanLine* scan_line) {
+    return guard([&] {
+        check_idle(render);
+        const std::string method = kMethods[render->method].name;
+        if (method != "gouraud" && method != "phong")
+            fail(TRP_ERROR_STATE, "{} interpolates nothing along scan lines; gouraud and phong do", method);
+        if (x >= render->window.width || y >= render->window.height)
+            fail(TRP_ERROR_ARGUMENT, "pixel ({}, {}) is not of a picture of {} x {}", x, y, render->window.width,
+                 render->window.height);
+        Film film({render->window.width, render->window.height, x, y, 1, 1}, PassList());
+        std::atomic<bool> cancelled{false};
+        RenderJob::Counts counts;
+        const PickedScanLine picked =
+            pick_scan_line({render->snapshot, render->settings, &film, &cancelled, &counts},
+                           method == "gouraud" ? ScannedValue::radiance : ScannedValue::normal, x, y);
+        TrpScanLine out{};
+        if (picked.surface) {
+            out.seen = 1;
+            out.instance = picked.surface->instance;
+            out.face = picked.face;
+            out.mesh = picked.surface->mesh->name.c_str();
+            const auto copy = [](const Vec3& from, float* to) { std::copy_n(&from.x, 3, to); };
+            for (int k = 0; k < 4; ++k) {
+                const PolygonPoint& end = picked.line.ends[k];
+                out.vertices[k] = end.is_corner() ? picked.surface->mesh->corner_vertices[end.corner] : TRP_NO_ID;
+                copy(picked.values.ends[k], out.values[k]);
+            }
+            out.alpha = picked.line.alpha, out.beta = picked.line.beta, out.gamma = picked.line.gamma;
+            copy(picked.values.a, out.a);
+            copy(picked.values.b, out.b);
+            copy(picked.values.value, out.value);
+        }
+        write_struct(scan_line, out, "scan_line");
         return TRP_OK;
     });
 }

@@ -5,7 +5,6 @@
 #include <memory>
 
 #include "commands.h"
-#include "framing.h"
 #include "interrupt.h"
 #include "render_job.h"
 #include "report.h"
@@ -14,9 +13,6 @@
 
 namespace triptych::cli {
 namespace {
-
-constexpr uint32_t default_width = 960;
-constexpr uint32_t default_height = 540;
 
 struct CallbackState {
     ProgressLine line;
@@ -35,15 +31,6 @@ void on_log(void* user, const char* text) {
     if (state.quiet) return;
     state.line.clear();
     fmt::print(stderr, "triptych: {}\n", one_line(text));
-}
-
-void apply_settings(TrpRender* render, const LoadedScene& loaded, const RenderJob& job) {
-    for (const auto& [name, value] : loaded.settings) {
-        check(trp_render_set(render, name.c_str(), value.c_str()),
-              fmt::format("{}: extras.triptych.settings.{}", job.scene, one_line(name)));
-    }
-    for (const auto& [name, value] : job.settings) check(trp_render_set(render, name.c_str(), value.c_str()));
-    for (const std::string& pass : job.passes) check(trp_render_add_pass(render, pass.c_str()));
 }
 
 void run_render(TrpRender* render, InterruptGuard& guard, bool quiet) {
@@ -79,29 +66,21 @@ CommandCosts costs_of(const RenderJob& job, const LoadedScene& loaded, TrpRender
 int run(RenderJob job) {
     check_job(job);
     InterruptGuard guard;
-    LoadedScene loaded = load_gltf(std::filesystem::u8path(job.scene), job.camera, job.thread_count());
-    const auto choose = [](uint32_t wanted, uint32_t of_file, uint32_t usual) {
-        return wanted > 0 ? wanted : of_file > 0 ? of_file : usual;
-    };
-    const uint32_t width = choose(job.width, loaded.film_width, default_width);
-    const uint32_t height = choose(job.height, loaded.film_height, default_height);
-    check_tile(job, width, height);
-    complete_scene(loaded, width, height, job.thread_count());
-    if (!job.quiet) print_warnings(all_warnings(loaded));
-
-    const RenderHandle render = make_render(loaded.scene.get(), job.method);
-    set_film(render.get(), job, width, height);
-    apply_settings(render.get(), loaded, job);
+    LoadedPicture picture = load_picture(job);
+    check_tile(job, picture.width, picture.height);
+    const RenderHandle render = make_picture(job, picture);
+    if (job.tile.given()) set_tile(render.get(), job, picture.width, picture.height);
+    for (const std::string& pass : job.passes) check(trp_render_add_pass(render.get(), pass.c_str()));
     run_render(render.get(), guard, job.quiet);
 
     const auto start = std::chrono::steady_clock::now();
     check(trp_render_write(render.get(), job.output.c_str()));  // its message names the file
     const double write_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (!job.stats.empty()) {
-        CommandCosts costs = costs_of(job, loaded, render.get());
+        CommandCosts costs = costs_of(job, picture.loaded, render.get());
         costs.write_seconds = write_seconds;
-        costs.width = width;
-        costs.height = height;
+        costs.width = picture.width;
+        costs.height = picture.height;
         write_file(job.stats, statistics_json(costs));
     }
     return 0;
@@ -112,24 +91,14 @@ int run(RenderJob job) {
 Command add_render_command(CLI::App& program) {
     CLI::App* app = program.add_subcommand("render", "Render a glTF scene into a picture");
     const auto job = std::make_shared<RenderJob>();
-    app->add_option("SCENE", job->scene, "A .glb or .gltf file")->required();
+    add_picture_options(*app, *job);
     app->add_option("--method", job->method, "One of " + method_names())->required();
     app->add_option("--output", job->output, "The picture: .exr (all passes, float) or .png")->required();
-    app->add_option("--camera", job->camera, "Name of the camera; without it the scene's own, or its first");
-    app->add_option("--width", job->width, "Pixels; without it as the scene says, or 960")
-        ->check(CLI::Range(1u, 65536u));
-    app->add_option("--height", job->height, "Pixels; without it as the scene says, or 540")
-        ->check(CLI::Range(1u, 65536u));
     app->add_option("--samples", job->samples, "Samples to a pixel: --set samples=N");
     app->add_option("--seed", job->seed, "Of the random sequences: --set seed=N");
-    app->add_option("--threads", job->threads, "Threads; 0: one to a core");
-    app->add_option("--set", job->set, "NAME=VALUE: a setting of `triptych settings`")
-        ->take_all()
-        ->allow_extra_args(false);
     app->add_option("--pass", job->passes, "A pass of `triptych passes`")->take_all()->allow_extra_args(false);
     app->add_option("--tile", job->tile_text, "X,Y,W,H: this part of the picture alone, from its top left");
     app->add_option("--stats", job->stats, "Write what it cost into this file, as JSON");
-    app->add_flag("--quiet", job->quiet, "No progress and no warnings");
     return {app, [job] { return run(*job); }};
 }
 

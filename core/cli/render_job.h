@@ -3,10 +3,9 @@
 #pragma once
 
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "handles.h"
+#include "picture_job.h"
 
 namespace triptych::cli {
 
@@ -16,18 +15,12 @@ struct Tile {
     bool given() const { return width > 0; }
 };
 
-struct RenderJob {
-    std::string scene, method, output, camera, stats;
-    uint32_t width = 0, height = 0;  // 0: as the file says
+struct RenderJob : PictureJob {
+    std::string output, stats;
     std::string tile_text;
     Tile tile;
-    std::vector<std::string> set;  // NAME=VALUE
-    std::vector<std::pair<std::string, std::string>> settings;
     std::vector<std::string> passes;
-    std::string samples, seed, threads;
-    bool quiet = false;
-
-    uint32_t thread_count() const;
+    std::string samples, seed;
 };
 
 // Splits the texts, and checks names, values and the output. Throws a UsageError for what is wrong in the call, and an
@@ -37,7 +30,7 @@ void check_job(RenderJob& job);
 // Throws a UsageError for a tile outside a picture of that size.
 void check_tile(const RenderJob& job, uint32_t width, uint32_t height);
 
-// Gives `render` the picture's size and the job's tile.
-void set_film(TrpRender* render, const RenderJob& job, uint32_t width, uint32_t height);
+// Gives `render` the job's tile of a picture of that size.
+void set_tile(TrpRender* render, const RenderJob& job, uint32_t width, uint32_t height);
 
 }  // namespace triptych::cli

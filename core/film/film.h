@@ -19,6 +19,12 @@ inline uint32_t lane_at(uint32_t x, uint32_t y) {
     return (y >> 2) * 64 + (x >> 2) * 16 + (y & 3) * 4 + (x & 3);
 }
 
+// And the pixel of a lane, across and up.
+inline std::array<uint32_t, 2> pixel_of_lane(int lane) {
+    const auto i = static_cast<uint32_t>(lane);
+    return {(i >> 4 & 3) * 4 + (i & 3), (i >> 6) * 4 + (i >> 2 & 3)};
+}
+
 // The part of a picture that is rendered; pixels count from the bottom left.
 struct Window {
     uint32_t width = 960, height = 540;  // of the whole picture

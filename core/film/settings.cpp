@@ -12,6 +12,8 @@ namespace {
 
 const char* const kSpeculars[] = {"none", "phong", "blinn", nullptr};
 const char* const kNormals[] = {"mesh", "averaged", nullptr};
+const char* const kAveraging[] = {"plain", "angle", "area", nullptr};
+const char* const kInterpolations[] = {"perspective", "scan_line", nullptr};
 const char* const kFalloffs[] = {"light", "none", "linear", "quadratic", nullptr};
 const char* const kFilters[] = {"box", "gaussian", "blackman_harris", nullptr};
 const char* const kLineColors[] = {"line", "object", "material", nullptr};
@@ -47,8 +49,16 @@ const SettingRow kSettings[] = {
      "0,0,0", 0, 1e6, nullptr, kSurfaceMethods, "",
      [](Settings& s, const double* v) { s.illumination.ambient = color_of(v); }},
     {TRP_TYPE_ENUM, "shading.normals", "Normals",
-     "The mesh's own normals, or averages of the faces around each position", "", "mesh", 0, 0, kNormals,
-     kSurfaceMethods, "", [](Settings& s, const double* v) { s.normals = static_cast<NormalChoice>(*v); }},
+     "The mesh's own normals, or averages of the faces around each position, whether the mesh has normals or not; "
+     "faces "
+     "that are flat, and sharp edges, stay so",
+     "", "mesh", 0, 0, kNormals, kSurfaceMethods, "",
+     [](Settings& s, const double* v) { s.averaged_normals = *v != 0; }},
+    {TRP_TYPE_ENUM, "shading.averaging", "Averaging",
+     "How the faces around a vertex count in averaged normals: all alike, by their angles at the vertex, or by their "
+     "areas",
+     "", "angle", 0, 0, kAveraging, kSurfaceMethods, "",
+     [](Settings& s, const double* v) { s.normal_weight = static_cast<NormalWeight>(*v); }},
     {TRP_TYPE_ENUM, "shading.falloff", "Falloff",
      "How light fades with distance: each light's own way, not at all, with distance, or with its square; all agree at "
      "one metre",
@@ -71,6 +81,11 @@ const SettingRow kSettings[] = {
      "Samples of each pixel for smooth edges; 1 sees what lies at the pixel's centre", "", "8", 1, 32, nullptr,
      "visible_surface flat gouraud phong", "",
      [](Settings& s, const double* v) { s.raster_samples = static_cast<uint32_t>(*v); }},
+    {TRP_TYPE_ENUM, "raster.interpolation", "Interpolation",
+     "How colours or normals are interpolated over a face: right in perspective, triangle by triangle, or as the books "
+     "do it, down the sides of the polygon and along scan lines on the film, which changes as the picture turns",
+     "", "perspective", 0, 0, kInterpolations, "gouraud phong", "",
+     [](Settings& s, const double* v) { s.scan_line = *v != 0; }},
     {TRP_TYPE_FLOAT, "lines.width", "Width", "Width of the lines", "pixels", "1.5", 0.01, 64, nullptr, kLineMethods, "",
      [](Settings& s, const double* v) { s.lines.width = static_cast<float>(*v); }},
     {TRP_TYPE_ENUM, "lines.color_by", "Colour by",

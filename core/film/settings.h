@@ -26,7 +26,15 @@ struct Settings {
     uint32_t seed = 0;
     uint32_t threads = 0;
     Illumination illumination;
-    NormalChoice normals = NormalChoice::mesh;
+    bool averaged_normals = false;
+    NormalWeight normal_weight = NormalWeight::angle;
+    NormalChoice normals() const {
+        if (!averaged_normals) return NormalChoice::mesh;
+        return normal_weight == NormalWeight::plain  ? NormalChoice::plain_average
+               : normal_weight == NormalWeight::area ? NormalChoice::area_average
+                                                     : NormalChoice::angle_average;
+    }
+    bool scan_line = false;  // values are interpolated along scan lines instead of in perspective
     PixelFilter::Kind filter = PixelFilter::Kind::blackman_harris;
     float filter_width = 1.5f;
     bool transparent = false;

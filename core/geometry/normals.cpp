@@ -25,20 +25,22 @@ Vec3 unit_or_up(const Vec3& v) {
     return length > 0 ? v / length : Vec3(0, 0, 1);
 }
 
-// Adds each face's normal, times its angle, to sums[group(corner)].
+// Adds each face's normal, as it weighs, to sums[group(corner)].
 template <class Group>
-void add_face_normals(const Mesh& mesh, std::vector<Vec3>& sums, Group&& group) {
+void add_face_normals(const Mesh& mesh, NormalWeight weight, std::vector<Vec3>& sums, Group&& group) {
     std::vector<Vec3> polygon;
     for (uint32_t face = 0; face < mesh.face_count(); ++face) {
         const uint32_t begin = mesh.face_begin(face), n = mesh.face_end(face) - begin;
         if (n < 3) continue;
         polygon.clear();
         for (uint32_t k = 0; k < n; ++k) polygon.push_back(mesh.positions[mesh.corner_vertices[begin + k]]);
-        const Vec3 normal(newell(polygon).normalized());
+        const Vec3d twice_area = newell(polygon);
+        const Vec3 normal(weight == NormalWeight::area ? twice_area : twice_area.normalized());
         Vec3 to_previous = (polygon[n - 1] - polygon[0]).normalized();
         for (uint32_t k = 0; k < n; ++k) {
             const Vec3 to_next = (polygon[(k + 1) % n] - polygon[k]).normalized();
-            const float angle = std::acos(std::clamp(to_next.dot(to_previous), -1.0f, 1.0f));
+            const float angle =
+                weight == NormalWeight::angle ? std::acos(std::clamp(to_next.dot(to_previous), -1.0f, 1.0f)) : 1.0f;
             sums[group(begin + k)] += normal * angle;
             to_previous = -to_next;
         }
@@ -58,6 +60,37 @@ struct Groups {
 
 uint64_t edge_key(uint32_t a, uint32_t b) {
     return a < b ? (uint64_t{a} << 32 | b) : (uint64_t{b} << 32 | a);
+}
+
+// Corners that meet over an edge which is not sharp, between smooth faces, belong to one group.
+Groups group_corners(const Mesh& mesh, const std::vector<uint32_t>& vertex_of) {
+    const auto key_of = [&](uint32_t a, uint32_t b) { return edge_key(vertex_of[a], vertex_of[b]); };
+    std::unordered_set<uint64_t> sharp;
+    for (size_t e = 0; e < mesh.edge_flags.size(); ++e)
+        if (mesh.edge_flags[e] & TRP_EDGE_SHARP) sharp.insert(key_of(mesh.edges[2 * e], mesh.edges[2 * e + 1]));
+    // The map holds, for each edge, the corners of the first face seen at its lower and its upper vertex.
+    struct Ends {
+        uint32_t low, high;
+    };
+    std::unordered_map<uint64_t, Ends> seen;
+    seen.reserve(mesh.corner_vertices.size());
+    Groups groups(mesh.corner_vertices.size());
+    for (uint32_t face = 0; face < mesh.face_count(); ++face) {
+        const uint32_t begin = mesh.face_begin(face), end = mesh.face_end(face);
+        const bool smooth = mesh.face_smooth.empty() || mesh.face_smooth[face];
+        for (uint32_t c = begin; smooth && c < end; ++c) {
+            const uint32_t d = c + 1 < end ? c + 1 : begin;
+            const uint32_t a = vertex_of[mesh.corner_vertices[c]], b = vertex_of[mesh.corner_vertices[d]];
+            const uint64_t key = edge_key(a, b);
+            if (a == b || sharp.contains(key)) continue;
+            const Ends ends = a < b ? Ends{c, d} : Ends{d, c};
+            const auto [it, fresh] = seen.emplace(key, ends);
+            if (fresh) continue;
+            groups.join(it->second.low, ends.low);
+            groups.join(it->second.high, ends.high);
+        }
+    }
+    return groups;
 }
 
 }  // namespace
@@ -81,54 +114,27 @@ std::vector<Vec3> unit_normals(const Mesh& mesh) {
     return normals;
 }
 
-std::vector<Vec3> averaged_vertex_normals(const Mesh& mesh) {
-    std::vector<Vec3> sums(mesh.vertex_count, Vec3(0, 0, 0));
-    add_face_normals(mesh, sums, [&](uint32_t corner) { return mesh.corner_vertices[corner]; });
-    for (Vec3& n : sums) n = unit_or_up(n);
-    return sums;
-}
-
-std::vector<Vec3> averaged_corner_normals(const Mesh& mesh) {
-    std::unordered_set<uint64_t> sharp;
-    for (size_t e = 0; e < mesh.edge_flags.size(); ++e)
-        if (mesh.edge_flags[e] & TRP_EDGE_SHARP) sharp.insert(edge_key(mesh.edges[2 * e], mesh.edges[2 * e + 1]));
-    // Corners that meet over an edge which is not sharp belong to one group. The map holds, for each edge, the corners
-    // of the first face seen at its lower and its upper vertex.
-    struct Ends {
-        uint32_t low, high;
-    };
-    std::unordered_map<uint64_t, Ends> seen;
-    seen.reserve(mesh.corner_vertices.size());
-    Groups groups(mesh.corner_vertices.size());
-    for (uint32_t face = 0; face < mesh.face_count(); ++face) {
-        const uint32_t begin = mesh.face_begin(face), end = mesh.face_end(face);
-        const bool smooth = mesh.face_smooth.empty() || mesh.face_smooth[face];
-        for (uint32_t c = begin; smooth && c < end; ++c) {
-            const uint32_t d = c + 1 < end ? c + 1 : begin;
-            const uint32_t a = mesh.corner_vertices[c], b = mesh.corner_vertices[d];
-            const uint64_t key = edge_key(a, b);
-            if (a == b || sharp.contains(key)) continue;
-            const Ends ends = a < b ? Ends{c, d} : Ends{d, c};
-            const auto [it, fresh] = seen.emplace(key, ends);
-            if (fresh) continue;
-            groups.join(it->second.low, ends.low);
-            groups.join(it->second.high, ends.high);
-        }
+AveragedNormals averaged_normals(const Mesh& mesh, NormalWeight weight, bool weld) {
+    std::vector<uint32_t> vertex_of;
+    if (weld) {
+        vertex_of = weld_vertices(mesh);
+    } else {
+        vertex_of.resize(mesh.vertex_count);
+        std::iota(vertex_of.begin(), vertex_of.end(), 0u);
     }
-    std::vector<Vec3> sums(mesh.corner_vertices.size(), Vec3(0, 0, 0));
-    add_face_normals(mesh, sums, [&](uint32_t corner) { return groups.find(corner); });
-    std::vector<Vec3> normals(sums.size());
+    const bool by_corner = std::any_of(mesh.edge_flags.begin(), mesh.edge_flags.end(),
+                                       [](uint8_t flags) { return flags & TRP_EDGE_SHARP; });
+    if (!by_corner) {
+        std::vector<Vec3> sums(mesh.vertex_count, Vec3(0, 0, 0)), normals(mesh.vertex_count);
+        add_face_normals(mesh, weight, sums, [&](uint32_t corner) { return vertex_of[mesh.corner_vertices[corner]]; });
+        for (uint32_t v = 0; v < mesh.vertex_count; ++v) normals[v] = unit_or_up(sums[vertex_of[v]]);
+        return {NormalLayer::Domain::vertex, std::move(normals)};
+    }
+    Groups groups = group_corners(mesh, vertex_of);
+    std::vector<Vec3> sums(mesh.corner_vertices.size(), Vec3(0, 0, 0)), normals(sums.size());
+    add_face_normals(mesh, weight, sums, [&](uint32_t corner) { return groups.find(corner); });
     for (uint32_t c = 0; c < normals.size(); ++c) normals[c] = unit_or_up(sums[groups.find(c)]);
-    return normals;
-}
-
-std::vector<Vec3> welded_vertex_normals(const Mesh& mesh) {
-    const std::vector<uint32_t> welded = weld_vertices(mesh);
-    std::vector<Vec3> sums(mesh.vertex_count, Vec3(0, 0, 0));
-    add_face_normals(mesh, sums, [&](uint32_t corner) { return welded[mesh.corner_vertices[corner]]; });
-    std::vector<Vec3> normals(mesh.vertex_count);
-    for (uint32_t v = 0; v < mesh.vertex_count; ++v) normals[v] = unit_or_up(sums[welded[v]]);
-    return normals;
+    return {NormalLayer::Domain::corner, std::move(normals)};
 }
 
 }  // namespace trp

@@ -1,5 +1,4 @@
-// Shading normals of a mesh. Averages are weighted by the angle of each face at the vertex (Thürmer and Wüthrich 1998),
-// as Blender's are; all results have unit length.
+// Shading normals of a mesh, of unit length.
 #pragma once
 
 #include <vector>
@@ -8,13 +7,26 @@
 
 namespace trp {
 
+// Shading normals, object space: none (flat), one to a vertex, or one to a corner.
+struct NormalLayer {
+    enum class Domain { flat, vertex, corner } domain = Domain::flat;
+    const Vec3* values = nullptr;
+};
+
 // The mesh's own normals, made unit length; empty where they are so already. A zero normal becomes its face's.
 std::vector<Vec3> unit_normals(const Mesh& mesh);
-// One to a vertex, over all faces around it.
-std::vector<Vec3> averaged_vertex_normals(const Mesh& mesh);
-// One to a corner, over the faces around its vertex that can be reached without crossing a sharp edge or a border.
-std::vector<Vec3> averaged_corner_normals(const Mesh& mesh);
-// One to a vertex, over all faces around its position: vertices of equal position count as one.
-std::vector<Vec3> welded_vertex_normals(const Mesh& mesh);
+
+// How a face counts in the average at a vertex: as every other (Gouraud 1971), by its angle there (Thürmer and Wüthrich
+// 1998; Blender's), or by its area.
+enum class NormalWeight { plain, angle, area };
+
+// Averages over the faces around each vertex; where the mesh has sharp edges, those that can be reached without
+// crossing one or a border.
+struct AveragedNormals {
+    NormalLayer::Domain domain;
+    std::vector<Vec3> values;
+};
+// `weld`: vertices of equal position count as one.
+AveragedNormals averaged_normals(const Mesh& mesh, NormalWeight weight, bool weld);
 
 }  // namespace trp

@@ -17,18 +17,17 @@ Surface::Surface(std::shared_ptr<const Mesh> mesh) : mesh_(std::move(mesh)) {
     const std::vector<uint8_t>& smooth = mesh_->face_smooth;
     const bool any_smooth = std::any_of(smooth.begin(), smooth.end(), [](uint8_t s) { return s; });
     mixed_smooth_ = any_smooth && std::find(smooth.begin(), smooth.end(), 0) != smooth.end();
-    if (!smooth.empty() && !any_smooth) return;  // flat
+    all_flat_ = !smooth.empty() && !any_smooth;
+    if (all_flat_) return;
     if (!mesh_->normals.empty()) {
         normal_values_ = unit_normals(*mesh_);
         normals_.domain =
             mesh_->normal_domain == TRP_DOMAIN_CORNER ? NormalLayer::Domain::corner : NormalLayer::Domain::vertex;
         normals_.values = normal_values_.empty() ? mesh_->normals.data() : normal_values_.data();
     } else if (any_smooth) {
-        const bool sharp = std::any_of(mesh_->edge_flags.begin(), mesh_->edge_flags.end(),
-                                       [](uint8_t flags) { return flags & TRP_EDGE_SHARP; });
-        normal_values_ = sharp ? averaged_corner_normals(*mesh_) : averaged_vertex_normals(*mesh_);
-        normals_.domain = sharp ? NormalLayer::Domain::corner : NormalLayer::Domain::vertex;
-        normals_.values = normal_values_.data();
+        AveragedNormals averaged = averaged_normals(*mesh_, NormalWeight::angle, false);
+        normal_values_ = std::move(averaged.values);
+        normals_ = {averaged.domain, normal_values_.data()};
     }
 }
 
@@ -79,13 +78,20 @@ void Surface::make_triangles() {
     triangle_count_ = static_cast<uint32_t>(triangle_faces_.size());
 }
 
-const NormalLayer& Surface::averaged_normals() const {
-    std::call_once(averaged_once_, [this] {
-        averaged_values_ = welded_vertex_normals(*mesh_);
-        averaged_.domain = NormalLayer::Domain::vertex;
-        averaged_.values = averaged_values_.data();
+const NormalLayer& Surface::normals(NormalChoice choice) const {
+    static constexpr NormalLayer kFlat;
+    if (choice == NormalChoice::mesh) return normals_;
+    if (choice == NormalChoice::flat || all_flat_) return kFlat;
+    const NormalWeight weight = choice == NormalChoice::plain_average  ? NormalWeight::plain
+                                : choice == NormalChoice::area_average ? NormalWeight::area
+                                                                       : NormalWeight::angle;
+    Averaged& averaged = averaged_[static_cast<int>(weight)];
+    std::call_once(averaged.once, [&] {
+        AveragedNormals made = averaged_normals(*mesh_, weight, true);
+        averaged.values = std::move(made.values);
+        averaged.layer = {made.domain, averaged.values.data()};
     });
-    return averaged_;
+    return averaged.layer;
 }
 
 const ClusterSet& Surface::clusters() const {
@@ -101,7 +107,7 @@ const EdgeSet& Surface::edges() const {
 
 uint64_t Surface::bytes() const {
     return sizeof(uint32_t) * (triangle_vertices_.size() + triangle_corners_.size() + triangle_faces_.size()) +
-           sizeof(Vec3) * (normal_values_.size() + averaged_values_.size());
+           sizeof(Vec3) * normal_values_.size();
 }
 
 }  // namespace trp

@@ -7,14 +7,12 @@
 #include <vector>
 
 #include "geometry/edges.h"
+#include "geometry/normals.h"
 
 namespace trp {
 
-// Shading normals, unit length, object space: none (flat), one to a vertex, or one to a corner.
-struct NormalLayer {
-    enum class Domain { flat, vertex, corner } domain = Domain::flat;
-    const Vec3* values = nullptr;
-};
+// Which shading normals: the mesh's own, averages over the faces around each position, or those of the faces.
+enum class NormalChoice { mesh, plain_average, angle_average, area_average, flat };
 
 class Surface {
   public:
@@ -30,17 +28,15 @@ class Surface {
     // Three corners to a triangle, and its face; null for a mesh of triangles: corners 3t … 3t + 2, face t.
     const uint32_t* triangle_corners() const { return mesh_->triangles_only() ? nullptr : triangle_corners_.data(); }
     const uint32_t* triangle_faces() const { return mesh_->triangles_only() ? nullptr : triangle_faces_.data(); }
-    // The mesh's own normals; without them, averages over the smooth faces around a vertex that sharp edges do not
-    // part.
-    const NormalLayer& normals() const { return normals_; }
-    // Averages over all faces around each position, vertices welded where they coincide (shading.normals = averaged).
-    // Made on first use. Any thread.
-    const NormalLayer& averaged_normals() const;
+    // As chosen; faces that are flat by their flags stay so. The mesh's own are those it came with, or without them,
+    // averages over the smooth faces around a vertex that sharp edges do not part. Averages that are asked for weld
+    // vertices and are made on first use. Any thread.
+    const NormalLayer& normals(NormalChoice choice) const;
     // The triangles in groups, for projection. Made on first use. Any thread.
     const ClusterSet& clusters() const;
     // The mesh's edges. Made on first use. Any thread.
     const EdgeSet& edges() const;
-    bool mixed_smooth() const { return mixed_smooth_; }  // some faces are flat in spite of normals()
+    bool mixed_smooth() const { return mixed_smooth_; }  // some faces are flat in spite of their normals
     // Of the triangles, or where there are none, of the mesh's own edges; at the first time sample.
     const Bounds& bounds() const { return bounds_; }
     uint32_t dropped_faces() const { return dropped_faces_; }  // without area
@@ -55,10 +51,13 @@ class Surface {
     NormalLayer normals_;
     Bounds bounds_;
     uint32_t triangle_count_ = 0, dropped_faces_ = 0;
-    bool mixed_smooth_ = false;
-    mutable std::once_flag averaged_once_;
-    mutable std::vector<Vec3> averaged_values_;
-    mutable NormalLayer averaged_;
+    bool mixed_smooth_ = false, all_flat_ = false;
+    struct Averaged {
+        std::once_flag once;
+        std::vector<Vec3> values;
+        NormalLayer layer;
+    };
+    mutable Averaged averaged_[3];  // by NormalWeight
     mutable std::once_flag clusters_once_;
     mutable ClusterSet clusters_;
     mutable std::once_flag edges_once_;

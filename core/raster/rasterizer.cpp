@@ -6,12 +6,12 @@
 #include <cmath>
 
 #include "base/clock.h"
+#include "base/parallel.h"
 #include "film/pixel_random.h"
 #include "film/surface_passes.h"
 #include "raster/face_points.h"
 #include "raster/sample_pattern.h"
-#include "raster/seen_points.h"
-#include "raster/vertex_colors.h"
+#include "raster/scan_line.h"
 #include "shading/footprints.h"
 
 namespace trp {
@@ -44,28 +44,69 @@ struct Workspace : Shading {
 
 // A render's constants.
 struct Rasterizer {
-    const RenderJob& job;
+    Rasterizer(const RenderJob& of, Evaluation where, const char* method);
+
+    const RenderJob job;  // samples are those of the rasterizer
     const Snapshot& snapshot;
     Evaluation evaluation;
     View view;
     Projection projection;
-    DrawList list{};
-    TileLists tiles{};
     std::vector<SampleOffset> pattern;
-    uint32_t light_samples;  // of each shaded point
+    uint32_t light_samples = 1;  // of each shaded point
     Illumination illumination;
     bool wants_shadow_pass;
+    DrawList list;
     SceneColors colors;  // of vertices, where the method evaluates there
-    mutable tbb::enumerable_thread_specific<std::unique_ptr<Workspace>> workspaces{};
+    TileLists tiles;
+    mutable tbb::enumerable_thread_specific<std::unique_ptr<Workspace>> workspaces;
 
-    void shade_all_vertices();
+    void prepare();
+    void shade_all_vertices(const std::vector<uint8_t>& wanted);
     void tile(const TileWork& work) const;
     void sample(const TileWork& work, uint32_t number, Workspace& w) const;
     bool block(uint32_t place, const SampleOffset& offset, uint32_t sample, int layer, Workspace& w) const;
-    void shade(uint32_t block_x, uint32_t block_y, uint32_t sample, int layer, Workspace& w) const;
+    void shade(const BlockSamples& samples, uint32_t sample, int layer, Workspace& w) const;
     void illuminate(uint32_t block_x, uint32_t block_y, uint32_t number, Coherence coherence, const Points& points,
                     Shading& w) const;
+    PickedScanLine pick(uint32_t x, uint32_t y);
+    PickedScanLine scan(uint32_t slot, uint32_t face, bool behind, double x, double y) const;
 };
+
+RenderJob of_rasterizer(RenderJob job) {
+    job.settings.samples = job.settings.raster_samples;
+    job.settings.tile_size = std::max(job.settings.tile_size, kTileSide);
+    return job;
+}
+
+Rasterizer::Rasterizer(const RenderJob& of, Evaluation where, const char* method)
+    : job(of_rasterizer(of)),
+      snapshot(*of.snapshot),
+      evaluation(where),
+      view(make_raster_view(snapshot, of.film->window(), method)),
+      projection(view, of.film->window().width, of.film->window().height),
+      pattern(sample_pattern(of.settings)),
+      illumination(of.settings.illumination),
+      wants_shadow_pass((where == Evaluation::polygon || where == Evaluation::pixel) &&
+                        of.film->passes().has(kShadow)) {
+    if (evaluation == Evaluation::ambient && illumination.ambient == Vec3(0, 0, 0))
+        illumination.ambient = Vec3(1, 1, 1);
+    if (std::any_of(snapshot.lights.begin(), snapshot.lights.end(),
+                    [](const ReadyLight& light) { return light.is_sampled(); })) {
+        // Vertices are shaded once for all samples.
+        const uint32_t shadings = evaluation == Evaluation::vertex ? 1 : job.settings.samples;
+        light_samples = (of.settings.samples + shadings - 1) / shadings;
+    }
+}
+
+// Runs in the current arena.
+void Rasterizer::prepare() {
+    list = make_draw_list(snapshot, projection, Primitives::triangles, reach_of(pattern));
+    tiles = TileLists(list, job.film->window(), job.settings.tile_size);
+    if (evaluation != Evaluation::vertex) return;
+    std::vector<uint8_t> wanted(snapshot.surfaces.size(), 0);
+    for (const DrawnCluster& cluster : list.clusters) wanted[cluster.slot] = 1;
+    shade_all_vertices(wanted);
+}
 
 // The terms of the equation at points whose coefficients are known. `number`: of the light samples that come first.
 void Rasterizer::illuminate(uint32_t block_x, uint32_t block_y, uint32_t number, Coherence coherence,
@@ -90,9 +131,10 @@ void Rasterizer::illuminate(uint32_t block_x, uint32_t block_y, uint32_t number,
 }
 
 // What the method shows at the points of a block, into w.radiance.
-void Rasterizer::shade(uint32_t block_x, uint32_t block_y, uint32_t sample, int layer, Workspace& w) const {
+void Rasterizer::shade(const BlockSamples& samples, uint32_t sample, int layer, Workspace& w) const {
+    const ScanLines lines{snapshot, list, projection, samples};
     const bool flat = evaluation == Evaluation::polygon;
-    locate_seen(snapshot, flat ? NormalChoice::flat : job.settings.normals,
+    locate_seen(snapshot, flat ? NormalChoice::flat : job.settings.normals(),
                 {view.position, view.perspective ? nullptr : &w.origins, w.directions}, w.points);
     if (flat) {
         move_to_faces(snapshot, view.perspective ? &view.position : nullptr, w.points);
@@ -103,9 +145,13 @@ void Rasterizer::shade(uint32_t block_x, uint32_t block_y, uint32_t sample, int 
         make_footprints(
             {w.directions, view.perspective, view.x * (view.step_x * scale), view.y * (view.step_y * scale)}, w.points);
     }
+    if (job.settings.scan_line && evaluation == Evaluation::pixel)
+        scan_normals(lines, job.settings.normals(), w.points);
     evaluate(snapshot, w.points, w.coefficients, w.program);
-    if (evaluation == Evaluation::vertex) return interpolate_colors(snapshot, colors, w.points, w.radiance);
-    illuminate(block_x, block_y, sample * light_samples,
+    if (evaluation == Evaluation::vertex)
+        return job.settings.scan_line ? scan_colors(lines, colors, w.points, w.radiance)
+                                      : interpolate_colors(snapshot, colors, w.points, w.radiance);
+    illuminate(samples.x / kBlockSide, samples.y / kBlockSide, sample * light_samples,
                layer == 0 && !flat ? Coherence::coherent : Coherence::incoherent, w.points, w);
 }
 
@@ -126,9 +172,9 @@ bool Rasterizer::block(uint32_t place, const SampleOffset& offset, uint32_t samp
         any_seen |= keys[i] != kNothing;
     }
     if (!any_missed && !any_seen) return false;
-    if (any_seen || snapshot.world.texture != TRP_NO_ID)
-        make_directions(view, {x, y, 0.5f + offset.x / kSubpixels, 0.5f + offset.y / kSubpixels}, w.origins,
-                        w.directions);
+    const BlockSamples samples{x, y, 0.5f + static_cast<float>(offset.x) / kSubpixels,
+                               0.5f + static_cast<float>(offset.y) / kSubpixels};
+    if (any_seen || snapshot.world.texture != TRP_NO_ID) make_directions(view, samples, w.origins, w.directions);
     const BlockSums sums = job.film->block(x / kBlockSide, y / kBlockSide);
     if (any_missed) add_background(snapshot, w.directions, w.missed, throughput, job.settings.transparent, sums);
     bool any_left = false;
@@ -136,7 +182,7 @@ bool Rasterizer::block(uint32_t place, const SampleOffset& offset, uint32_t samp
     uint8_t* first = layered ? &w.first[size_t{place} * kBatch] : own_first;
     if (any_seen) {
         read_keys(list, keys, w.points);
-        shade(x / kBlockSide, y / kBlockSide, sample, layer, w);
+        shade(samples, sample, layer, w);
         add_surfaces(
             {snapshot, w.points, w.coefficients, w.radiance, throughput, wants_shadow_pass ? &w.arriving : nullptr},
             sample == 0 ? first : nullptr, sums);
@@ -196,64 +242,73 @@ void Rasterizer::tile(const TileWork& work) const {
     for (uint32_t s = work.first_sample; s < work.end_sample; ++s) sample(work, s, *w);
 }
 
-// Runs in the current arena.
-void Rasterizer::shade_all_vertices() {
-    std::vector<uint8_t> wanted(snapshot.surfaces.size(), 0);
-    for (const DrawnCluster& cluster : list.clusters) wanted[cluster.slot] = 1;
-    colors = shade_vertices(snapshot, wanted, job.settings.normals, view.perspective ? &view.position : nullptr, view.z,
-                            [&](uint32_t slot, uint32_t batch, bool behind, Points& points, LaneVec3& radiance) {
-                                if (*job.cancelled) return;
-                                const auto w = std::make_unique<Shading>();
-                                locate(snapshot, job.settings.normals, points, behind ? Side::back : Side::front);
-                                evaluate(snapshot, points, w->coefficients, w->program);
-                                // The random sequence of a block far outside of any film.
-                                illuminate(batch, ~slot, 0, Coherence::incoherent, points, *w);
-                                radiance = w->radiance;
-                            });
+void Rasterizer::shade_all_vertices(const std::vector<uint8_t>& wanted) {
+    colors =
+        shade_vertices(snapshot, wanted, job.settings.normals(), view.perspective ? &view.position : nullptr, view.z,
+                       [&](uint32_t slot, uint32_t batch, bool behind, Points& points, LaneVec3& radiance) {
+                           if (*job.cancelled) return;
+                           const auto w = std::make_unique<Shading>();
+                           locate(snapshot, job.settings.normals(), points, behind ? Side::back : Side::front);
+                           evaluate(snapshot, points, w->coefficients, w->program);
+                           // The random sequence of a block far outside of any film.
+                           illuminate(batch, ~slot, 0, Coherence::incoherent, points, *w);
+                           radiance = w->radiance;
+                       });
+}
+
+// The nearest surface at the centre of a pixel that is not a hole, and its scan line. Runs in the current arena.
+PickedScanLine Rasterizer::pick(uint32_t x, uint32_t y) {
+    list = make_draw_list(snapshot, projection, Primitives::triangles, 0);
+    const BlockSamples samples{x / kBlockSide * kBlockSide, y / kBlockSide * kBlockSide};
+    const auto lane = static_cast<int>(lane_at(x % kBlockSide, y % kBlockSide));
+    const auto w = std::make_unique<Workspace>();
+    w->visibility.place(static_cast<int32_t>(samples.x), static_cast<int32_t>(samples.y), 1, 1);
+    make_directions(view, samples, w->origins, w->directions);
+    for (int layer = 0; layer < kGreatestLayers; ++layer) {
+        w->visibility.begin(projection, 0, 0, layer > 0);
+        for (uint32_t cluster = 0; cluster < list.clusters.size(); ++cluster)
+            w->visibility.draw(projection, list, cluster);
+        read_keys(list, w->visibility.keys(0), w->points);
+        const uint32_t slot = w->points.slot[lane];
+        if (slot == kNoSlot) return {};
+        locate_seen(snapshot, job.settings.normals(),
+                    {view.position, view.perspective ? nullptr : &w->origins, w->directions}, w->points);
+        w->points.clear_footprints();
+        evaluate(snapshot, w->points, w->coefficients, w->program);
+        if (!(w->coefficients.alpha[lane] > 0)) continue;
+        if (evaluation == Evaluation::vertex) {
+            std::vector<uint8_t> wanted(snapshot.surfaces.size(), 0);
+            wanted[slot] = 1;
+            shade_all_vertices(wanted);
+        }
+        return scan(slot, snapshot.surfaces[slot].face(w->points.triangle[lane]), w->points.behind[lane], x + 0.5,
+                    y + 0.5);
+    }
+    return {};
+}
+
+PickedScanLine Rasterizer::scan(uint32_t slot, uint32_t face, bool behind, double x, double y) const {
+    const PlacedSurface& surface = snapshot.surfaces[slot];
+    PickedScanLine out{&surface, face, ScanPolygon(surface, face, list.transforms[slot], projection).at(x, y), {}};
+    out.values = interpolate(out.line, [&](uint32_t corner) {
+        if (evaluation == Evaluation::vertex) return colors[slot].at(surface, corner, behind);
+        Vec3 normal =
+            surface.world_from_object.normal(surface.surface->edges().face_normals[face]) * surface.normal_sign;
+        corner_normal(surface, job.settings.normals(), face, corner, normal);
+        return normal.normalized() * (behind ? -1.0f : 1.0f);
+    });
+    return out;
 }
 
 bool rasterize(RenderJob& job, const RenderEvents& events, Evaluation evaluation, const char* method) {
-    const Snapshot& snapshot = *job.snapshot;
+    Rasterizer rasterizer(job, evaluation, method);
     const Window& window = job.film->window();
-    const View view = make_raster_view(snapshot, window, method);
-    RenderJob tiled = job;
-    tiled.settings.samples = job.settings.raster_samples;
-    tiled.settings.tile_size = std::max(job.settings.tile_size, kTileSide);
-
-    const Projection projection(view, window.width, window.height);
-    Illumination illumination = job.settings.illumination;
-    if (evaluation == Evaluation::ambient && illumination.ambient == Vec3(0, 0, 0))
-        illumination.ambient = Vec3(1, 1, 1);
-    const bool any_sampled = std::any_of(snapshot.lights.begin(), snapshot.lights.end(),
-                                         [](const ReadyLight& light) { return light.is_sampled(); });
-    // Vertices are shaded once for all samples.
-    const uint32_t shadings = evaluation == Evaluation::vertex ? 1 : tiled.settings.samples;
-    const uint32_t light_samples = any_sampled ? (job.settings.samples + shadings - 1) / shadings : 1;
-    const std::vector<SampleOffset> pattern = sample_pattern(job.settings);
-    Rasterizer rasterizer{
-        tiled,
-        snapshot,
-        evaluation,
-        view,
-        projection,
-        {},
-        {},
-        pattern,
-        light_samples,
-        illumination,
-        (evaluation == Evaluation::polygon || evaluation == Evaluation::pixel) && job.film->passes().has(kShadow),
-        {},
-        {}};
     if (events.log)
-        events.log(fmt::format("{} x {} pixels, {} samples, {} lights", window.w, window.h, tiled.settings.samples,
-                               snapshot.lights.size()));
+        events.log(fmt::format("{} x {} pixels, {} samples, {} lights", window.w, window.h,
+                               rasterizer.job.settings.samples, job.snapshot->lights.size()));
+    RenderJob tiled = rasterizer.job;
     return run_tiles(
-        tiled, events, [&](const TileWork& work) { rasterizer.tile(work); },
-        [&] {
-            rasterizer.list = make_draw_list(snapshot, projection, Primitives::triangles, reach_of(pattern));
-            rasterizer.tiles = TileLists(rasterizer.list, window, tiled.settings.tile_size);
-            if (evaluation == Evaluation::vertex) rasterizer.shade_all_vertices();
-        });
+        tiled, events, [&](const TileWork& work) { rasterizer.tile(work); }, [&] { rasterizer.prepare(); });
 }
 
 }  // namespace
@@ -269,6 +324,15 @@ bool gouraud_shading(RenderJob& job, const RenderEvents& events) {
 }
 bool phong_shading(RenderJob& job, const RenderEvents& events) {
     return rasterize(job, events, Evaluation::pixel, "phong");
+}
+
+PickedScanLine pick_scan_line(const RenderJob& job, ScannedValue value, uint32_t x, uint32_t y) {
+    const bool colors = value == ScannedValue::radiance;
+    Rasterizer rasterizer(job, colors ? Evaluation::vertex : Evaluation::pixel, colors ? "gouraud" : "phong");
+    PickedScanLine out;
+    Arena arena(job.settings.threads);
+    arena.run([&] { out = rasterizer.pick(x, y); });
+    return out;
 }
 
 }  // namespace trp

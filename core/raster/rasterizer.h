@@ -3,6 +3,7 @@
 #pragma once
 
 #include "film/tiles.h"
+#include "raster/scan_line.h"
 
 namespace trp {
 
@@ -11,5 +12,16 @@ bool visible_surface(RenderJob& job, const RenderEvents& events);  // nowhere: e
 bool flat_shading(RenderJob& job, const RenderEvents& events);     // once for each polygon
 bool gouraud_shading(RenderJob& job, const RenderEvents& events);  // at each vertex
 bool phong_shading(RenderJob& job, const RenderEvents& events);    // at each pixel
+
+// The scan line through the centre of a pixel, as Gouraud shading interpolates radiance on it, and Phong shading unit
+// normals; whatever interpolation the job's settings name. `surface` is null where nothing is seen.
+enum class ScannedValue { radiance, normal };
+struct PickedScanLine {
+    const PlacedSurface* surface = nullptr;
+    uint32_t face = 0;
+    ScanLine line;
+    ScanValues values;
+};
+PickedScanLine pick_scan_line(const RenderJob& job, ScannedValue value, uint32_t x, uint32_t y);
 
 }  // namespace trp

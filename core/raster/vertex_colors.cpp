@@ -9,9 +9,9 @@ namespace {
 
 // Whether all faces around a vertex agree on all that is evaluated there.
 bool shares_vertices(const Snapshot& snapshot, const PlacedSurface& surface, NormalChoice normals) {
-    const auto domain = normals == NormalChoice::averaged ? NormalLayer::Domain::vertex : surface.normals.domain;
-    if (domain != NormalLayer::Domain::vertex || surface.face_materials) return false;
-    if (normals == NormalChoice::mesh && surface.face_smooth) return false;
+    if (surface.surface->normals(normals).domain != NormalLayer::Domain::vertex || surface.face_materials ||
+        surface.face_smooth)
+        return false;
     const bool by_program = snapshot.materials[surface.slot_materials[0]].has_program();
     const Mesh& mesh = *surface.mesh;
     const auto by_corner = [](const Attribute& layer) { return layer.domain == TRP_DOMAIN_CORNER; };

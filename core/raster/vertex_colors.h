@@ -14,6 +14,10 @@ namespace trp {
 struct VertexColors {
     bool by_corner = false;
     std::vector<Vec3> sides[2];
+    // At a corner of the surface's mesh.
+    const Vec3& at(const PlacedSurface& surface, uint32_t corner, bool behind) const {
+        return sides[behind][by_corner ? corner : surface.mesh->corner_vertices[corner]];
+    }
 };
 
 // By slot; empty for surfaces that were not wanted.

@@ -6,8 +6,6 @@
 
 namespace trp {
 
-// Which shading normals: the mesh's own, averages over all faces around each position, or those of the triangles.
-enum class NormalChoice { mesh, averaged, flat };
 enum class Specular { none, phong, blinn };
 
 // Positions, normals and materials of the lanes with a slot, on the side of the surface that the viewer sees, or on

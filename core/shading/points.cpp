@@ -48,8 +48,6 @@ Corners<V> load_corners(D d, const PlacedSurface& surface, VI v0, VI v1, VI v2, 
     return c;
 }
 
-constexpr NormalLayer kFlatNormals;
-
 // The cofactor matrix of the surface's transform times n: turns normals, up to length.
 template <class D, class V>
 Vector3<V> turn_normal(D d, const PlacedSurface& surface, const Vector3<V>& n) {
@@ -141,12 +139,10 @@ void locate_lanes(const Snapshot& snapshot, NormalChoice choice, Side seen_side,
             // What is by face is read lane by lane: few meshes mix.
             alignas(64) int32_t is_smooth[HWY_MAX_BYTES / sizeof(int32_t)];
             hn::Store(hn::Set(di, -1), di, is_smooth);
-            if (choice == NormalChoice::mesh && surface.face_smooth)
+            if (surface.face_smooth)
                 for (int k = 0; k < lanes; ++k)
                     if (is_here[k]) is_smooth[k] = -surface.face_smooth[surface.face(points.triangle[i + k])];
-            const NormalLayer& layer = choice == NormalChoice::averaged ? surface.surface->averaged_normals()
-                                       : choice == NormalChoice::flat   ? kFlatNormals
-                                                                        : surface.normals;
+            const NormalLayer& layer = surface.surface->normals(choice);
             Vector3<V> shading = plane;
             if (layer.domain != NormalLayer::Domain::flat) {
                 const bool by_vertex = layer.domain == NormalLayer::Domain::vertex;

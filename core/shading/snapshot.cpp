@@ -183,7 +183,6 @@ PlacedSurface place(const Placement& placement, const Vec3* world_positions, con
     out.vertices = surface.triangle_vertices();
     out.corners = surface.triangle_corners();
     out.faces = surface.triangle_faces();
-    out.normals = surface.normals();
     out.face_smooth = surface.mixed_smooth() ? out.mesh->face_smooth.data() : nullptr;
     out.world_from_object = placement.world_from_object;
     Affine unmoved = placement.world_from_object;

@@ -16,12 +16,11 @@ namespace trp {
 // What shading reads of a placed surface, by geometry id.
 struct PlacedSurface {
     const Mesh* mesh = nullptr;
-    const Vec3* positions = nullptr;     // world space where `baked`, else object space
-    const uint32_t* vertices = nullptr;  // three to a triangle
-    const uint32_t* corners = nullptr;   // null: 3t … 3t + 2
-    const uint32_t* faces = nullptr;     // null: t
-    NormalLayer normals;
-    const uint8_t* face_smooth = nullptr;      // null: all faces are as `normals` says
+    const Vec3* positions = nullptr;           // world space where `baked`, else object space
+    const uint32_t* vertices = nullptr;        // three to a triangle
+    const uint32_t* corners = nullptr;         // null: 3t … 3t + 2
+    const uint32_t* faces = nullptr;           // null: t
+    const uint8_t* face_smooth = nullptr;      // null: all faces have the normals chosen
     const uint16_t* face_materials = nullptr;  // null: all faces are of slot 0
     std::vector<uint32_t> slot_materials;      // indices into Snapshot::materials, at least one
     Affine world_from_object;

@@ -45,7 +45,7 @@ struct Caster {
 void Caster::shade(uint32_t block_x, uint32_t block_y, uint32_t sample, Coherence coherence, Workspace& w) const {
     const auto start = Clock::now();
     const Illumination& illumination = job.settings.illumination;
-    locate(snapshot, job.settings.normals, w.points);
+    locate(snapshot, job.settings.normals(), w.points);
     if (snapshot.needs_footprint)
         make_footprints({w.rays.direction, maker.view.perspective, maker.view.x * (maker.view.step_x * maker.footprint),
                          maker.view.y * (maker.view.step_y * maker.footprint)},

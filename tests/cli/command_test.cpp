@@ -114,6 +114,13 @@ TEST_F(Command, Misuse) {
         {{"info"}, "SCENE"},
         {{"info", scene, "--speed"}, "--speed"},
         {{"methods", "all"}, "all"},
+        {{"pick", scene}, "--pixel"},
+        {{"pick", scene, "--pixel", "3"}, "is not X,Y"},
+        {{"pick", scene, "--pixel", "3,4,5"}, "is not X,Y"},
+        {{"pick", scene, "--pixel", "3,4,"}, "is not X,Y"},
+        {{"pick", scene, "--pixel", "64,3", "--width", "64", "--height", "32"}, "outside the picture of 64 x 32"},
+        {{"pick", scene, "--pixel", "3,4", "--set", "samples"}, "is not NAME=VALUE"},
+        {{"pick", scene, "--pixel", "3,4", "--method", "magic"}, "there is no method 'magic'"},
         {{"render", scene, "--method", "magic", "--output", picture}, "there is no method 'magic'"},
         {{"render", scene, "--method", "ray_casting", "--output", (folder / "a.jpg").string()},
          "does not end in .exr or .png"},
@@ -193,6 +200,29 @@ TEST_F(Command, Info) {
     const Outcome text = run({"info", scene});
     EXPECT_EQ(text.code, 0);
     EXPECT_NE(text.out.find("triptych tests"), std::string::npos);
+}
+
+TEST_F(Command, PickShowsTheScanLineOfAPixel) {
+    const Outcome outcome =
+        run({"pick", scene, "--pixel", "32,16", "--width", "64", "--height", "32", "--json", "--quiet"});
+    ASSERT_EQ(outcome.code, 0) << outcome.error;
+    const json line = json::parse(outcome.out);
+    EXPECT_EQ(line["seen"], true);
+    EXPECT_EQ(line["quantity"], "radiance");
+    const double alpha = line["alpha"], gamma = line["gamma"];
+    for (size_t k = 0; k < 3; ++k) {
+        const double i1 = line["left"]["values"][0][k], i2 = line["left"]["values"][1][k], a = line["A"][k],
+                     b = line["B"][k], i = line["I"][k];
+        EXPECT_NEAR(a, alpha * i1 + (1 - alpha) * i2, 1e-5);
+        EXPECT_NEAR(i, (1 - gamma) * a + gamma * b, 1e-5);
+    }
+    const json empty = json::parse(
+        run({"pick", scene, "--pixel", "0,0", "--width", "640", "--height", "32", "--json", "--quiet"}).out);
+    EXPECT_EQ(empty["seen"], false);
+    const Outcome text =
+        run({"pick", scene, "--pixel", "32,16", "--width", "64", "--height", "32", "--method", "phong"});
+    EXPECT_NE(text.out.find("normals interpolated over face"), std::string::npos);
+    expect_error(run({"pick", scene, "--pixel", "0,0", "--method", "flat", "--quiet"}), 1, "scan lines");
 }
 
 TEST_F(Command, Tables) {

@@ -134,7 +134,8 @@ TEST(Invariance, AWindowIsAPieceOfThePicture) {
     Scene scene;
     build(scene, {});
     scene.commit();
-    const Settings settings = {{"samples", "3"}, {"raster.samples", "2"}, {"lines.hidden", "faint"}};
+    const Settings settings = {
+        {"samples", "3"}, {"raster.samples", "2"}, {"raster.interpolation", "scan_line"}, {"lines.hidden", "faint"}};
     for (const char* method : kMethods) {
         const Image whole = Render(scene, kWidth, kHeight, settings, {}, method).run().read();
         for (const auto& [x, y, w, h] :

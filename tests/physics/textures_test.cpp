@@ -66,6 +66,21 @@ TEST(Textures, LieAsTheirCoordinatesSay) {
             for (int k = 0; k < 3; ++k) EXPECT_NEAR(image.at(3 * x, 3 * y)[k], expected[2 * y + x][k], 1e-3) << x << y;
 }
 
+TEST(Textures, EdgeSamplesOfTheRasterizerLieWhereTheyAreSaid) {
+    // The boundary between two texels goes through pixel 15, three tenths of the way across.
+    Textured t({1, 1, 1, 0, 0, 0}, 2, [](TrpTextureDesc& d) { d.filter = TRP_FILTER_NEAREST; });
+    t.show_emission(1, 1, -0.01f, 0);
+    t.scene.camera_above(2);
+    t.scene.commit();
+    for (const char* method : {"visible_surface", "phong"}) {
+        const Settings settings = {{"raster.samples", "32"}, {"film.filter", "box"}, {"film.filter_width", "1"}};
+        const Image image = Render(t.scene, 30, 30, settings, {}, method).run().read();
+        EXPECT_NEAR(image.at(14, 15)[0], 1, 1e-3) << method;
+        EXPECT_NEAR(image.at(15, 15)[0], 0.3, 1 / 16.0) << method;
+        EXPECT_NEAR(image.at(16, 15)[0], 0, 1e-3) << method;
+    }
+}
+
 TEST(Textures, AreFilteredToTheirMeanFarAway) {
     // A checkerboard seen so small that a pixel covers many squares is its mean in linear light, with one sample.
     const uint32_t side = 256;

@@ -501,6 +501,26 @@ TRP_API TrpStatus trp_render_read(const TrpRender* render, const char* pass, uin
  * ViewLayer.Pass.C as Blender and Nuke do, data window = the render's window; or .png, Combined, 8-bit sRGB. */
 TRP_API TrpStatus trp_render_write(const TrpRender* render, const char* path);
 
+/* How scan-line interpolation (raster.interpolation = scan_line) makes the value of a pixel's centre: down the sides of
+ * the polygon that is seen there, A = alpha I1 + (1 - alpha) I2 and B = beta I3 + (1 - beta) I4, and across the scan
+ * line, I = (1 - gamma) A + gamma B. The values are radiance in W/(m^2 sr) where the render's method is gouraud, and
+ * unit normals in world space, on the side that is seen, where it is phong (I is not of unit length then). */
+typedef struct TrpScanLine {
+    uint32_t struct_size;
+    int32_t seen;         /* 0: no surface is seen there, and all that follows is 0 */
+    uint32_t instance;    /* the id of the object */
+    uint32_t face;        /* of its mesh */
+    const char* mesh;     /* its name, or ""; the render's, until it is destroyed */
+    uint32_t vertices[4]; /* of I1 to I4: the upper and the lower end of the side on the left, and of that on the right;
+                             TRP_NO_ID where the near plane cuts the side */
+    float values[4][3];   /* I1 to I4 */
+    float alpha, beta, gamma;
+    float a[3], b[3], value[3]; /* A, B and I */
+} TrpScanLine;
+/* x and y are a pixel of the picture, from the bottom left; the settings are those of the render, which need not have
+ * run, but must not be running. TRP_ERROR_STATE for other methods than gouraud and phong. */
+TRP_API TrpStatus trp_render_pick_scan_line(const TrpRender* render, uint32_t x, uint32_t y, TrpScanLine* scan_line);
+
 typedef struct TrpStatistics {
     uint32_t struct_size;
     uint32_t threads;

@@ -1,0 +1,133 @@
+#include "raster/scan_line.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <optional>
+
+namespace trp {
+namespace {
+
+// Calls take(lane, surface, scan line) for all lanes with a slot; neighbours mostly show one face.
+template <class Take>
+void for_each_lane(const ScanLines& lines, const Points& points, Take&& take) {
+    uint32_t slot = kNoSlot, face = 0;
+    std::optional<ScanPolygon> polygon;
+    for (int i = 0; i < kBatch; ++i) {
+        if (points.slot[i] == kNoSlot) continue;
+        const PlacedSurface& surface = lines.snapshot.surfaces[points.slot[i]];
+        if (!polygon || points.slot[i] != slot || surface.face(points.triangle[i]) != face) {
+            slot = points.slot[i];
+            face = surface.face(points.triangle[i]);
+            polygon.emplace(surface, face, lines.list.transforms[slot], lines.projection);
+        }
+        const auto [x, y] = pixel_of_lane(i);
+        take(i, surface,
+             polygon->at(static_cast<double>(lines.samples.x + x) + static_cast<double>(lines.samples.offset_x),
+                         static_cast<double>(lines.samples.y + y) + static_cast<double>(lines.samples.offset_y)));
+    }
+}
+
+}  // namespace
+
+void scan_colors(const ScanLines& lines, const SceneColors& colors, const Points& points, LaneVec3& radiance) {
+    for (int c = 0; c < 3; ++c) std::fill_n(radiance[c], kBatch, 0.0f);
+    for_each_lane(lines, points, [&](int i, const PlacedSurface& surface, const ScanLine& line) {
+        const VertexColors& of = colors[points.slot[i]];
+        radiance.set(
+            i, interpolate(line, [&](uint32_t corner) { return of.at(surface, corner, points.behind[i]); }).value);
+    });
+}
+
+void scan_normals(const ScanLines& lines, NormalChoice choice, Points& points) {
+    for_each_lane(lines, points, [&](int i, const PlacedSurface& surface, const ScanLine& line) {
+        const uint32_t face = surface.face(points.triangle[i]);
+        bool smooth = true;
+        const Vec3 normal = interpolate(line, [&](uint32_t corner) {
+                                Vec3 n(0, 0, 0);
+                                smooth &= corner_normal(surface, choice, face, corner, n);
+                                return n;
+                            }).value;
+        if (!smooth || normal == Vec3(0, 0, 0)) return;
+        points.normal.set(i, normal.normalized() * (points.behind[i] ? -1.0f : 1.0f));
+    });
+}
+
+bool corner_normal(const PlacedSurface& surface, NormalChoice choice, uint32_t face, uint32_t corner, Vec3& out) {
+    const NormalLayer& layer = surface.surface->normals(choice);
+    if (layer.domain == NormalLayer::Domain::flat || (surface.face_smooth && !surface.face_smooth[face])) return false;
+    const uint32_t element =
+        layer.domain == NormalLayer::Domain::corner ? corner : surface.mesh->corner_vertices[corner];
+    const Vec3& normal = layer.values[element];
+    out = surface.identity ? normal : (surface.world_from_object.normal(normal) * surface.normal_sign).normalized();
+    return true;
+}
+
+ScanPolygon::ScanPolygon(const PlacedSurface& surface, uint32_t face, const FilmTransform& transform,
+                         const Projection& projection) {
+    const Mesh& mesh = *surface.mesh;
+    const uint32_t begin = mesh.face_begin(face), count = mesh.face_end(face) - begin;
+    std::vector<FilmPoint> film(count);
+    for (uint32_t k = 0; k < count; ++k)
+        film[k] = on_film(transform, surface.positions[mesh.corner_vertices[begin + k]]);
+    const auto add = [&](uint32_t corner, uint32_t other, double share, const FilmPoint& q) {
+        const double depth = projection.perspective() ? q[2] : 1;
+        const auto grid = [&](double at, double size) {
+            const double held = std::clamp(at / depth, -double{kGuardBand}, size + double{kGuardBand});
+            return std::round(held * kSubpixels) / kSubpixels;
+        };
+        points_.push_back({begin + corner, begin + other, static_cast<float>(share), grid(q[0], projection.width()),
+                           grid(q[1], projection.height())});
+    };
+    for (uint32_t k = 0; k < count; ++k) {
+        const uint32_t next = k + 1 < count ? k + 1 : 0;
+        const FilmPoint &a = film[k], &b = film[next];
+        const double at_a = a[2] - projection.clip_start(), at_b = b[2] - projection.clip_start();
+        if (at_a >= 0) add(k, k, 0, a);
+        if ((at_a >= 0) == (at_b >= 0)) continue;
+        const double t = at_a / (at_a - at_b);
+        FilmPoint cut;
+        for (int r = 0; r < 3; ++r) cut[r] = a[r] + (b[r] - a[r]) * t;
+        add(k, next, t, cut);
+    }
+}
+
+ScanLine ScanPolygon::at(double x, double y) const {
+    // Rounding may have put the point just above or below the polygon.
+    double low = 1e30, high = -1e30;
+    for (const PolygonPoint& p : points_) low = std::min(low, p.y), high = std::max(high, p.y);
+    y = std::clamp(y, low, high - 0.5 / kSubpixels);
+
+    struct Crossing {
+        double x;
+        float share;  // of the upper end
+        const PolygonPoint *upper, *lower;
+    };
+    std::vector<Crossing> crossings;
+    for (size_t k = 0; k < points_.size(); ++k) {
+        const PolygonPoint *upper = &points_[k], *lower = &points_[k + 1 < points_.size() ? k + 1 : 0];
+        if ((upper->y <= y) == (lower->y <= y)) continue;
+        if (upper->y < lower->y) std::swap(upper, lower);
+        const double share = (y - lower->y) / (upper->y - lower->y);
+        crossings.push_back({lower->x + (upper->x - lower->x) * share, static_cast<float>(share), upper, lower});
+    }
+    ScanLine line;
+    if (crossings.size() < 2) return line;
+    std::stable_sort(crossings.begin(), crossings.end(),
+                     [](const Crossing& a, const Crossing& b) { return a.x < b.x; });
+    // Concave polygons are crossed more than twice: the span that holds the point, or comes nearest to it.
+    size_t best = 0;
+    double least = 1e30;
+    for (size_t k = 0; k + 1 < crossings.size(); k += 2) {
+        const double away = std::max({crossings[k].x - x, x - crossings[k + 1].x, 0.0});
+        if (away < least) least = away, best = k;
+    }
+    const Crossing &a = crossings[best], &b = crossings[best + 1];
+    line.ends[0] = *a.upper, line.ends[1] = *a.lower, line.ends[2] = *b.upper, line.ends[3] = *b.lower;
+    line.alpha = a.share;
+    line.beta = b.share;
+    line.gamma = b.x > a.x ? static_cast<float>(std::clamp((x - a.x) / (b.x - a.x), 0.0, 1.0)) : 0.0f;
+    return line;
+}
+
+}  // namespace trp
