@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The still life by every method of the engine, rendered in Blender, and a sheet of all of them.
+"""The still life by every method of the engine, rendered in Blender, a sheet of all of them, and a sheet of shadings.
 
     blender -b --factory-startup --python-exit-code 1 --python scripts/demo.py -- OUTPUT_FOLDER
 
 Writes METHOD.png for each method and methods.png, which is itself a Blender scene of pictures and captions that the
-engine renders.
+engine renders; and shadings.png, which sets flat, Gouraud and Phong shading of a coarse vase side by side, with the
+intensity along one scan line under each.
 """
 
 import os
@@ -64,6 +65,8 @@ def emission(name, picture=None):
 
 def add_tile(index, count, path, text, ink):
     """A picture one unit wide and its caption, at its place on the sheet; the sheet's size so far."""
+    from triptych import lettering
+
     scene = bpy.context.scene
     columns = min(COLUMNS, count)
     material = emission(text, path)
@@ -77,9 +80,7 @@ def add_tile(index, count, path, text, ink):
         mesh.uv_layers[0].data[corner].uv = uv
     mesh.materials.append(material)
     scene.collection.objects.link(bpy.data.objects.new(text, mesh))
-    caption = bpy.data.curves.new(text, "FONT")
-    caption.body = text
-    caption.size = 0.45 * CAPTION
+    caption = lettering.curve(text, 0.45 * CAPTION)
     caption.materials.append(ink)
     words = bpy.data.objects.new(text + " caption", caption)
     words.location = (x + 0.02, y - 0.65 * CAPTION, 0)
@@ -113,6 +114,32 @@ def render_sheet(path, tiles):
     render_to(path)
 
 
+def build_vase():
+    """A vase of few faces, whose vertices all miss its highlight; one face of its belly has it in the middle."""
+    import common
+    import shapes
+
+    common.start("Vase", 600, 640)
+    glaze = common.diffuse("Glaze", (0.16, 0.42, 0.44))
+    classic = glaze.triptych
+    classic.override, classic.diffuse = True, (0.16, 0.42, 0.44)
+    classic.specular, classic.shininess = (0.35, 0.35, 0.35), 50
+    outline = [(0, 0), (0.30, 0), (0.60, 0.40), (0.56, 0.80), (0.30, 1.16), (0.22, 1.40), (0.34, 1.60)]
+    body = shapes.lathe(shapes.spline(outline, 11), 12)
+    common.mesh_object("Vase", body, glaze, smooth=True)
+    common.sun_light("Sun", (0.55, 0.80, -0.50), 3.5)
+    common.world((0.030, 0.035, 0.045))
+    common.camera((0, -6, 1.5), (0, 0, 0.8), lens=115)
+
+
+def render_shadings(path):
+    """Flat, Gouraud and Phong shading of the vase."""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    build_vase()
+    bpy.ops.triptych.shading_sheet(filepath=str(path))
+    print(f"demo: {path.name}", flush=True)
+
+
 def main(folder):
     import still_life
     import triptych
@@ -128,6 +155,7 @@ def main(folder):
             tiles.append((path, label, render_to(path)))
             print(f"demo: {path.name} in {tiles[-1][2]:.1f} s", flush=True)
         render_sheet(folder / "methods.png", tiles)
+        render_shadings(folder / "shadings.png")
     finally:
         triptych.unregister()
 

@@ -10,6 +10,7 @@ The modules, in the order in which data walks through them:
     core        data to the shared library; with abi, the only ctypes
     gltf, gltf_mesh, glb        data to a .glb file, without the library
     engine, properties, panels      Blender's side: what is registered
+    shading_sheet, lettering        a sheet that compares flat, Gouraud and Phong shading
 """
 
 import atexit
@@ -27,9 +28,9 @@ bl_info = {
 
 def _modules():
     # Imported on demand, so that `import triptych.gltf` works in a script that never registers.
-    from . import engine, export_operator, panels, properties
+    from . import engine, export_operator, panels, properties, shading_sheet
 
-    return (properties, engine, panels, export_operator)
+    return (properties, engine, panels, export_operator, shading_sheet)
 
 
 _registered = []

@@ -5,10 +5,14 @@ Only a render engine is given a depsgraph of Blender's render mode (render visib
 one is registered for the moment of the export and asked to render.
 """
 
+from contextlib import contextmanager
+
 import bpy
 
 from . import data
 from .export_scene import export_scene
+
+RENDER_SLOT = "Triptych Export"
 
 # What would run after the engine, or in its place.
 _SWITCHED_OFF = ("use_compositing", "use_sequencer", "use_freestyle", "use_border", "use_multiview")
@@ -49,7 +53,8 @@ def export_as_rendered(scene, view_layer=None, triangulate=False):
         render.engine = Exporter.bl_idname
         for name in _SWITCHED_OFF:
             setattr(render, name, False)
-        bpy.ops.render.render(layer=view_layer, scene=scene.name)
+        with _render_result_kept():
+            bpy.ops.render.render(layer=view_layer, scene=scene.name)
     finally:
         for name, value in before.items():
             setattr(render, name, value)
@@ -59,3 +64,22 @@ def export_as_rendered(scene, view_layer=None, triangulate=False):
     if "scene" not in done:
         raise data.ExportError(f"scene '{scene.name}': Blender did not start the export")
     return done["scene"]
+
+
+@contextmanager
+def _render_result_kept():
+    """The export goes by way of a render; it gets a slot of its own, so that the user's picture stays."""
+    result = bpy.data.images.get("Render Result")
+    if result is None:
+        yield
+        return
+    slots = result.render_slots
+    before = slots.active_index
+    names = [slot.name for slot in slots]
+    if RENDER_SLOT not in names:
+        names.append(slots.new(name=RENDER_SLOT).name)
+    slots.active_index = names.index(RENDER_SLOT)
+    try:
+        yield
+    finally:
+        slots.active_index = before

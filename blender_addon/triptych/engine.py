@@ -110,8 +110,7 @@ class _Job:
             known = [name for name, _, _ in core.methods()]
             return next((name for name in _PREVIEW_METHODS if name in known), known[0]), dict(_PREVIEW_SETTINGS)
         values = settings.changed(source)
-        if source.render.threads_mode == "FIXED":
-            values.setdefault("threads", str(source.render.threads))
+        settings.set_threads(values, source)
         return source.triptych.method, values
 
     def _report(self, warnings):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Panels: the method and its settings, coefficients, light; and Blender's own panels opened to the engine."""
+"""Panels: the method, its settings, comparisons, coefficients, light; and Blender's own panels opened to the engine."""
 
 import bpy
 
@@ -126,6 +126,15 @@ def _settings_panel(group):
     return type(name, (_Panel, bpy.types.Panel), content)
 
 
+class TRIPTYCH_RENDER_PT_compare(_Panel, bpy.types.Panel):
+    bl_label = "Compare"
+    bl_context = "render"
+    bl_order = -8
+
+    def draw(self, context):
+        self.layout.operator("triptych.shading_sheet")
+
+
 class TRIPTYCH_VIEWLAYER_PT_passes(_Panel, bpy.types.Panel):
     bl_label = "Passes"
     bl_context = "view_layer"
@@ -215,6 +224,7 @@ class TRIPTYCH_LIGHT_PT_light(_Panel, bpy.types.Panel):
 
 _CLASSES = (
     TRIPTYCH_RENDER_PT_method,
+    TRIPTYCH_RENDER_PT_compare,
     TRIPTYCH_VIEWLAYER_PT_passes,
     TRIPTYCH_MATERIAL_PT_coefficients,
     TRIPTYCH_LIGHT_PT_light,

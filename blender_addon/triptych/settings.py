@@ -41,3 +41,9 @@ def changed(scene):
         if group.is_property_set(name) if choice is None else choice != UNSET:
             result[setting] = as_text(getattr(group, name))
     return result
+
+
+def set_threads(values, scene):
+    """Adds the number of threads that a bpy.types.Scene fixes for itself, unless {setting: text} has one."""
+    if scene.render.threads_mode == "FIXED":
+        values.setdefault("threads", str(scene.render.threads))
