@@ -19,7 +19,8 @@ const MethodRow kMethods[] = {
     {"phong", "Phong Shading", "Normals interpolated across polygons; light and highlight at each pixel",
      phong_shading},
     {"ray_casting", "Ray Casting",
-     "One ray to a sample: the nearest surface with light, shadow and highlight, no reflections", ray_casting},
+     "One ray to a sample: the nearest surface with light, shadow and highlight, no reflections and no refraction",
+     ray_casting},
 };
 const uint32_t kMethodCount = sizeof kMethods / sizeof kMethods[0];
 

@@ -24,12 +24,24 @@ void add_first(const SeenSurfaces& seen, int i, const BlockSums& sums) {
 void add_surfaces(const SeenSurfaces& seen, uint8_t* first, const BlockSums& sums) {
     const Points& points = seen.points;
     const std::array<float*, 4> rgba = sums.combined();
-    // Without branches, for the compiler to make vectors of.
-    Lanes weights;
-    for (int i = 0; i < kBatch; ++i)
-        weights[i] = points.slot[i] == kNoSlot ? 0 : seen.throughput[i] * seen.coefficients.alpha[i];
-    for (int c = 0; c < 3; ++c)
-        for (int i = 0; i < kBatch; ++i) rgba[c][i] += weights[i] * seen.radiance[c][i];
+    // Without branches, for the compiler to make vectors of. Weights: the part of the pixel that ends here.
+    Lanes alpha, weights;
+    for (int i = 0; i < kBatch; ++i) alpha[i] = points.slot[i] == kNoSlot ? 0 : seen.coefficients.alpha[i];
+    if (seen.throughput || points.any_transmission) {
+        std::fill_n(weights, kBatch, 0.0f);
+        for (int i = 0; i < kBatch; ++i) {
+            if (alpha[i] == 0) continue;
+            const Vec3 share = (seen.throughput ? seen.throughput->get(i) : Vec3(1, 1, 1)) * alpha[i];
+            for (int c = 0; c < 3; ++c) rgba[c][i] += share[c] * seen.radiance[c][i];
+            const Vec3 ends =
+                points.any_transmission ? share * (Vec3(1, 1, 1) - seen.coefficients.transmission.get(i)) : share;
+            weights[i] = (ends.x + ends.y + ends.z) / 3;
+        }
+    } else {
+        std::copy_n(alpha, kBatch, weights);
+        for (int c = 0; c < 3; ++c)
+            for (int i = 0; i < kBatch; ++i) rgba[c][i] += weights[i] * seen.radiance[c][i];
+    }
     for (int i = 0; i < kBatch; ++i) rgba[3][i] += weights[i];
     if (sums.passes().order().size() == 1) return;
 
@@ -49,21 +61,29 @@ void add_surfaces(const SeenSurfaces& seen, uint8_t* first, const BlockSums& sum
     }
 }
 
+Vec3 throughput_behind(const Points& points, const Coefficients& coefficients, int lane, const Vec3& throughput) {
+    constexpr float kLeast = 1e-3f;
+    const float alpha = coefficients.alpha[lane];
+    Vec3 left = throughput * (1 - alpha);
+    if (points.any_transmission) left += throughput * coefficients.transmission.get(lane) * alpha;
+    return std::max({left.x, left.y, left.z}) < kLeast ? Vec3(0, 0, 0) : left;
+}
+
 void add_background(const Snapshot& snapshot, const LaneVec3& directions, const uint8_t* missed,
-                    const float* throughput, bool transparent, const BlockSums& sums) {
-    Lanes weights;
-    for (int i = 0; i < kBatch; ++i) weights[i] = missed[i] ? throughput[i] : 0;
-    for (int c = 0; c < 3; ++c)
+                    const LaneVec3* throughput, bool transparent, const BlockSums& sums) {
+    static thread_local LaneVec3 weights, radiance;
+    for (int c = 0; c < 3; ++c) {
+        for (int i = 0; i < kBatch; ++i) weights[c][i] = !missed[i] ? 0 : throughput ? (*throughput)[c][i] : 1;
         if (float* shadow = sums.channel(kShadow, c))
-            for (int i = 0; i < kBatch; ++i) shadow[i] += weights[i];
+            for (int i = 0; i < kBatch; ++i) shadow[i] += weights[c][i];
+    }
     if (transparent) return;
     const std::array<float*, 4> rgba = sums.combined();
-    for (int i = 0; i < kBatch; ++i) rgba[3][i] += weights[i];
+    for (int i = 0; i < kBatch; ++i) rgba[3][i] += (weights.x[i] + weights.y[i] + weights.z[i]) / 3;
     if (snapshot.world.radiance == Vec3(0, 0, 0) || !snapshot.world.visible_camera) return;
-    static thread_local LaneVec3 radiance;
     sample_background(snapshot, directions, missed, radiance);
     for (int c = 0; c < 3; ++c)
-        for (int i = 0; i < kBatch; ++i) rgba[c][i] += weights[i] * radiance[c][i];
+        for (int i = 0; i < kBatch; ++i) rgba[c][i] += weights[c][i] * radiance[c][i];
 }
 
 void finish_depth(const uint8_t* first, const BlockSums& sums) {

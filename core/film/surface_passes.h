@@ -6,15 +6,14 @@
 
 namespace trp {
 
-inline constexpr int kGreatestLayers = 64;        // of surfaces with holes in a row, one behind the other
-inline constexpr float kLeastThroughput = 1e-3f;  // less is nothing
+inline constexpr int kGreatestLayers = 64;  // of surfaces with holes in a row, one behind the other
 
 struct SeenSurfaces {
     const Snapshot& snapshot;
     const Points& points;
     const Coefficients& coefficients;
     const LaneVec3& radiance;       // 0 where a lane sees nothing
-    const float* throughput;        // of the surfaces before
+    const LaneVec3* throughput;     // of the surfaces before; null: there is none
     const ArrivingLight* arriving;  // null: all light arrives, or the Shadow pass was not asked for
 };
 
@@ -22,9 +21,13 @@ struct SeenSurfaces {
 // that are not averaged; they are written for those that have not, and marked.
 void add_surfaces(const SeenSurfaces& seen, uint8_t* first, const BlockSums& sums);
 
+// What goes on to the surface behind a lane's: throughput (1 − α + α K_T), along the straight way; 0 where it is next
+// to nothing.
+Vec3 throughput_behind(const Points& points, const Coefficients& coefficients, int lane, const Vec3& throughput);
+
 // Adds the background to the lanes that are `missed`.
 void add_background(const Snapshot& snapshot, const LaneVec3& directions, const uint8_t* missed,
-                    const float* throughput, bool transparent, const BlockSums& sums);
+                    const LaneVec3* throughput, bool transparent, const BlockSums& sums);
 
 // After the first sample: the depth of lanes that have seen no surface.
 void finish_depth(const uint8_t* first, const BlockSums& sums);

@@ -34,7 +34,7 @@ struct Shading {
 struct Workspace : Shading {
     VisibilityTile visibility;
     // Of all pixels, where surfaces have holes.
-    std::vector<float> throughput;
+    std::vector<LaneVec3> throughput;
     std::vector<uint8_t> first;
 
     LaneVec3 origins, directions;
@@ -161,13 +161,11 @@ bool Rasterizer::block(uint32_t place, const SampleOffset& offset, uint32_t samp
                    x = static_cast<uint32_t>(w.visibility.x0()) + place % across * kBlockSide,
                    y = static_cast<uint32_t>(w.visibility.y0()) + place / across * kBlockSide;
     const uint32_t* keys = w.visibility.keys(place);
-    Lanes whole;
-    std::fill_n(whole, kBatch, 1.0f);
-    const bool layered = !w.throughput.empty();
-    float* throughput = layered ? &w.throughput[size_t{place} * kBatch] : whole;
+    const bool layered = snapshot.seen_through;
+    LaneVec3* const throughput = layered ? &w.throughput[place] : nullptr;
     bool any_missed = false, any_seen = false;
     for (int i = 0; i < kBatch; ++i) {
-        w.missed[i] = keys[i] == kNothing && throughput[i] > 0;
+        w.missed[i] = keys[i] == kNothing && (!layered || throughput->get(i) != Vec3(0, 0, 0));
         any_missed |= w.missed[i] != 0;
         any_seen |= keys[i] != kNothing;
     }
@@ -189,12 +187,13 @@ bool Rasterizer::block(uint32_t place, const SampleOffset& offset, uint32_t samp
     }
     if (layered)
         for (int i = 0; i < kBatch; ++i) {
-            throughput[i] *= keys[i] == kNothing ? 0 : 1 - w.coefficients.alpha[i];
-            if (throughput[i] < kLeastThroughput) {
-                throughput[i] = 0;
+            const Vec3 left = keys[i] == kNothing ? Vec3(0, 0, 0)
+                                                  : throughput_behind(w.points, w.coefficients, i, throughput->get(i));
+            throughput->set(i, left);
+            if (left == Vec3(0, 0, 0))
                 w.visibility.close(place, i);
-            }
-            any_left |= throughput[i] > 0;
+            else
+                any_left = true;
         }
     if (sample == 0 && layer == 0 && !layered) finish_depth(first, sums);
     job.film->add_samples(x / kBlockSide, y / kBlockSide, layer == 0);
@@ -205,7 +204,9 @@ void Rasterizer::sample(const TileWork& work, uint32_t number, Workspace& w) con
     const SampleOffset& offset = pattern[number];
     const uint32_t blocks = w.visibility.blocks_across() * w.visibility.blocks_up();
     if (snapshot.seen_through) {
-        w.throughput.assign(size_t{blocks} * kBatch, 1.0f);
+        w.throughput.resize(blocks);
+        for (LaneVec3& lanes : w.throughput)
+            for (int c = 0; c < 3; ++c) std::fill_n(lanes[c], kBatch, 1.0f);
         if (number == 0) w.first.assign(size_t{blocks} * kBatch, 0);
     }
     bool any_left = true;

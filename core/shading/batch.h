@@ -44,6 +44,7 @@ struct Points {
     alignas(64) uint8_t behind[kBatch];     // 1: the viewer sees the back
     bool any_program = false;               // a lane's material has nodes
     bool any_holes = false;                 // a lane's material may have alpha below 1, or one side
+    bool any_transmission = false;          // a lane's material transmits
 
     // The footprint, by the visibility method after locate(): the change of b1 and b2 by one pixel to the right and one
     // pixel up, in the plane of the triangle. Needed where textures are (Snapshot::needs_footprint), else unset.
@@ -56,7 +57,7 @@ struct Points {
 struct Coefficients {
     LaneVec3 emission, ambient, diffuse, specular;
     alignas(64) Lanes shininess, alpha;
-    LaneVec3 mirror, transmission;
+    LaneVec3 mirror, transmission;  // transmission: where Points::any_transmission
     alignas(64) Lanes ior;
 };
 

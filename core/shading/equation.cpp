@@ -76,6 +76,7 @@ void gather_constants(const float* rows, size_t stride, const Points& points, Co
         };
         for (const auto& color : colors)
             for (int c = 0; c < 3; ++c) fill(color.row + c, (*color.value)[c]);
+        for (int c = 0; c < 3 && points.any_transmission; ++c) fill(kTransmission + c, coefficients.transmission[c]);
         fill(kShininess, coefficients.shininess);
         fill(kAlpha, coefficients.alpha);
     }

@@ -194,6 +194,7 @@ void locate_lanes(const Snapshot& snapshot, NormalChoice choice, Side seen_side,
     }
     points.any_program = flags & kHasProgram;
     points.any_holes = flags & kMayHaveHoles;
+    points.any_transmission = flags & kTransmits;
 }
 
 }  // namespace trp::HWY_NAMESPACE

@@ -322,6 +322,7 @@ CompiledMaterial compile(const Material& material, const TextureSet& textures) {
     if (out.normal != TRP_NO_NODE) out.normal = kept[out.normal];
 
     out.emits = out.constants[kEmission] > 0 || out.constants[kEmission + 1] > 0 || out.constants[kEmission + 2] > 0;
+    for (int c = 0; c < 3; ++c) out.transmits |= out.constants[kTransmission + c] > 0;
     out.has_holes = out.constants[kAlpha] < 1 ||
                     std::any_of(out.outputs.begin(), out.outputs.end(), [](const auto& o) { return o.row == kAlpha; });
     return out;

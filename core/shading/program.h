@@ -51,6 +51,7 @@ struct CompiledMaterial {
     bool thin = false, double_sided = true;
     bool emits = false;      // its emission is not 0
     bool has_holes = false;  // alpha may be below 1
+    bool transmits = false;  // its transmission is not 0
 
     bool has_program() const { return !instructions.empty(); }
     bool needs_footprint() const;

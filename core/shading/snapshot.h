@@ -48,6 +48,7 @@ struct PlacedSurface {
 enum MaterialFlag : uint8_t {
     kHasProgram = 1,
     kMayHaveHoles = 2,  // alpha below 1, or one side
+    kTransmits = 4,
 };
 
 struct Snapshot {
@@ -65,7 +66,7 @@ struct Snapshot {
     std::shared_ptr<const Camera> camera;  // null: none; in world space, not relative
     bool needs_footprint = false;
     bool any_holes = false;     // a shown material's alpha may be below 1
-    bool seen_through = false;  // or a material has one side: the eye may see what lies behind a surface
+    bool seen_through = false;  // or one transmits, or has one side: the eye may see what lies behind a surface
 
     std::map<uint32_t, std::shared_ptr<const Surface>> made_surfaces;  // by mesh id, for the next commit
     std::vector<Warning> warnings;

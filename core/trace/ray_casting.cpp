@@ -20,7 +20,7 @@ struct Workspace {
     Coefficients coefficients;
     LaneVec3 radiance;
     ArrivingLight arriving;
-    alignas(64) Lanes throughput;
+    LaneVec3 throughput;
     uint8_t active[kBatch], missed[kBatch];
     LightScratch lights;
     ProgramScratch program;
@@ -81,9 +81,10 @@ void Caster::add_seen_lights(Workspace& w) const {
             any = true;
         }
         if (!any) continue;
-        for (int c = 0; c < 3; ++c) rgba[c][i] += w.throughput[i] * nearest.radiance[c];
-        rgba[3][i] += w.throughput[i];
-        w.sums.add(kShadow, i, Vec3(1, 1, 1) * w.throughput[i]);
+        const Vec3 throughput = w.throughput.get(i);
+        for (int c = 0; c < 3; ++c) rgba[c][i] += throughput[c] * nearest.radiance[c];
+        rgba[3][i] += throughput.x;
+        w.sums.add(kShadow, i, throughput);
         w.active[i] = 0;
         w.points.slot[i] = kNoSlot;
     }
@@ -94,7 +95,7 @@ void Caster::layers(uint32_t block_x, uint32_t block_y, uint32_t sample, Workspa
     auto start = Clock::now();
     make_primary_rays(maker, block_x, block_y, sample, w.rays);
     std::fill_n(w.active, kBatch, uint8_t{1});
-    std::fill_n(w.throughput, kBatch, 1.0f);
+    for (int c = 0; c < 3; ++c) std::fill_n(w.throughput[c], kBatch, 1.0f);
     uint8_t first[kBatch] = {};
     uint64_t primary_rays = kBatch, primary_time = 0;
     // Packets are whole and their lanes fixed to the film in the first layer alone.
@@ -112,20 +113,21 @@ void Caster::layers(uint32_t block_x, uint32_t block_y, uint32_t sample, Workspa
             any_hit |= w.points.slot[i] != kNoSlot;
         }
         if (any_missed)
-            add_background(snapshot, w.rays.direction, w.missed, w.throughput, job.settings.transparent, w.sums);
+            add_background(snapshot, w.rays.direction, w.missed, layer > 0 ? &w.throughput : nullptr,
+                           job.settings.transparent, w.sums);
         if (!any_hit) break;
         shade(block_x, block_y, sample, coherence, w);
-        add_surfaces(
-            {snapshot, w.points, w.coefficients, w.radiance, w.throughput, wants_shadow_pass ? &w.arriving : nullptr},
-            sample == 0 ? first : nullptr, w.sums);
-        if (!w.points.any_holes) break;
+        add_surfaces({snapshot, w.points, w.coefficients, w.radiance, layer > 0 ? &w.throughput : nullptr,
+                      wants_shadow_pass ? &w.arriving : nullptr},
+                     sample == 0 ? first : nullptr, w.sums);
+        if (!w.points.any_holes && !w.points.any_transmission) break;
 
         bool any_left = false;
         for (int i = 0; i < kBatch; ++i) {
             w.active[i] = 0;
             if (w.points.slot[i] == kNoSlot) continue;
-            w.throughput[i] *= 1 - w.coefficients.alpha[i];
-            if (w.throughput[i] < kLeastThroughput) continue;
+            w.throughput.set(i, throughput_behind(w.points, w.coefficients, i, w.throughput.get(i)));
+            if (w.throughput.get(i) == Vec3(0, 0, 0)) continue;
             w.active[i] = 1;
             any_left = true;
             ++primary_rays;

@@ -269,6 +269,39 @@ TEST(Raster, HolesShowWhatLiesBehindThem) {
     }
 }
 
+TEST(Raster, TransmissionShowsWhatLiesBehind) {
+    // I = I_E + K_T I_T along the straight way, through a filter before another with an alpha.
+    Scene scene;
+    scene.world({1, 1, 1});
+    const auto filter = [&](Vec transmission, float emission, float alpha) {
+        return scene.material([&](TrpMaterialDesc& d) {
+            d.diffuse = {{0, 0, 0}, TRP_NO_NODE};
+            d.emission = {{emission, emission, emission}, TRP_NO_NODE};
+            std::copy_n(transmission.begin(), 3, d.transmission.value);
+            d.alpha = {{alpha, 0, 0}, TRP_NO_NODE};
+        });
+    };
+    const Vec near = {0.5f, 0.25f, 0}, far = {1, 0.5f, 0.75f};
+    scene.object(floor_square(1, 2), filter(near, 0.125f, 1));
+    scene.object(floor_square(1, 1), filter(far, 0.25f, 0.5f));
+    scene.camera_above(3);
+    scene.commit();
+    for (const char* method : {"ray_casting", "visible_surface", "flat", "gouraud", "phong"}) {
+        const Image image = Render(scene, 30, 30, {{"raster.samples", "2"}}, {}, method).run().read();
+        Settings clear = {{"film.transparent", "on"}};
+        const Image cut = Render(scene, 30, 30, clear, {}, method).run().read();
+        float through = 0;
+        for (size_t k = 0; k < 3; ++k) {
+            const float behind = 0.5f + 0.5f * far[k];  // past an alpha of a half
+            EXPECT_NEAR(image.at(15, 15)[k], 0.125f + near[k] * (0.5f * 0.25f + behind), 1e-5) << method;
+            EXPECT_NEAR(cut.at(15, 15)[k], 0.125f + near[k] * 0.5f * 0.25f, 1e-5) << method;
+            through += near[k] * behind / 3;
+        }
+        EXPECT_NEAR(image.at(15, 15)[3], 1, 1e-5) << method;
+        EXPECT_NEAR(cut.at(15, 15)[3], 1 - through, 1e-5) << method;
+    }
+}
+
 TEST(Raster, OneSidedSurfacesAreNotSeenFromBehind) {
     Scene scene;
     scene.world({0, 0, 1});
