@@ -71,19 +71,23 @@ Vec3 throughput_behind(const Points& points, const Coefficients& coefficients, i
 
 void add_background(const Snapshot& snapshot, const LaneVec3& directions, const uint8_t* missed,
                     const LaneVec3* throughput, bool transparent, const BlockSums& sums) {
-    static thread_local LaneVec3 weights, radiance;
-    for (int c = 0; c < 3; ++c) {
-        for (int i = 0; i < kBatch; ++i) weights[c][i] = !missed[i] ? 0 : throughput ? (*throughput)[c][i] : 1;
-        if (float* shadow = sums.channel(kShadow, c))
-            for (int i = 0; i < kBatch; ++i) shadow[i] += weights[c][i];
-    }
-    if (transparent) return;
+    const bool shows = snapshot.world.visible_camera && snapshot.world.radiance != Vec3(0, 0, 0);
+    static thread_local LaneVec3 radiance;
+    if (shows && !transparent) sample_background(snapshot, directions, missed, radiance);
     const std::array<float*, 4> rgba = sums.combined();
-    for (int i = 0; i < kBatch; ++i) rgba[3][i] += (weights.x[i] + weights.y[i] + weights.z[i]) / 3;
-    if (snapshot.world.radiance == Vec3(0, 0, 0) || !snapshot.world.visible_camera) return;
-    sample_background(snapshot, directions, missed, radiance);
-    for (int c = 0; c < 3; ++c)
-        for (int i = 0; i < kBatch; ++i) rgba[c][i] += weights[c][i] * radiance[c][i];
+    for (int c = 0; c < 3; ++c) {
+        Lanes weights;
+        for (int i = 0; i < kBatch; ++i) weights[i] = !missed[i] ? 0 : throughput ? (*throughput)[c][i] : 1;
+        if (float* shadow = sums.channel(kShadow, c))
+            for (int i = 0; i < kBatch; ++i) shadow[i] += weights[i];
+        if (transparent) continue;
+        if (shows)
+            for (int i = 0; i < kBatch; ++i) rgba[c][i] += weights[i] * radiance[c][i];
+        if (throughput)
+            for (int i = 0; i < kBatch; ++i) rgba[3][i] += weights[i] / 3;
+    }
+    if (transparent || throughput) return;
+    for (int i = 0; i < kBatch; ++i) rgba[3][i] += missed[i] ? 1.0f : 0.0f;
 }
 
 void finish_depth(const uint8_t* first, const BlockSums& sums) {

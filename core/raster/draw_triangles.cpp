@@ -7,7 +7,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstring>
 
 #include "raster/cluster_vertices.h"
 
@@ -231,6 +233,72 @@ void draw_any(const PlacedCluster& c, uint32_t k, uint32_t key, const Visibility
     for (size_t m = 2; m < count; ++m) draw_large(g[0], g[m - 1], g[m], plane, least, most, key, tile);
 }
 
+// A pixel of a triangle of a few. Of equally near triangles the one with the least key is kept, in whatever order they
+// come.
+HWY_INLINE void draw_pixel(size_t at, float near, uint32_t key, const VisibilityTile::Buffers& tile) {
+    const float shown = tile.nearness[at];
+    if (!(near > shown || (near == shown && key < tile.keys[at] && tile.keys[at] != kNothing))) return;
+    if (tile.last_keys) {
+        const float last = tile.last_nearness[at];
+        if (tile.last_keys[at] == kNothing || !(near < last || (near == last && key > tile.last_keys[at]))) return;
+    }
+    tile.nearness[at] = near;
+    tile.keys[at] = key;
+}
+
+// Triangles at most so many pixels wide and high are drawn side by side, a pixel of each at a time.
+constexpr int32_t kFewPixels = 3;
+
+// `edge`, `a`, `b`: of the edge functions, as in Setup; `first_key`: of the first lane.
+template <class VI, class V, class M>
+HWY_INLINE void draw_few(M wanted, VI i0, VI j0, VI across, VI up, const int32_t (*edge)[kMostLanes],
+                         const int32_t (*a)[kMostLanes], const int32_t (*b)[kMostLanes], V at_corner, V by_x, V by_y,
+                         V least, V most, uint32_t first_key, const VisibilityTile::Buffers& tile) {
+    const hn::ScalableTag<float> d;
+    const hn::RebindToSigned<decltype(d)> di;
+    const VI width = hn::Set(di, static_cast<int32_t>(tile.width)),
+             height = hn::Set(di, static_cast<int32_t>(tile.height)), none = hn::Set(di, -1), three = hn::Set(di, 3);
+    for (int32_t j = 0; j < kFewPixels; ++j) {
+        const auto row = hn::And(wanted, hn::Not(hn::Gt(hn::Set(di, j), up)));
+        if (hn::AllFalse(di, row)) return;
+        const VI y = hn::Add(j0, hn::Set(di, j));
+        for (int32_t i = 0; i < kFewPixels; ++i) {
+            const VI x = hn::Add(i0, hn::Set(di, i));
+            auto value = [&](int k) {
+                return hn::Add(hn::Load(di, edge[k]), hn::Add(hn::Mul(hn::Load(di, a[k]), hn::Set(di, i)),
+                                                              hn::Mul(hn::Load(di, b[k]), hn::Set(di, j))));
+            };
+            const VI outside = hn::Or(hn::Or(value(0), value(1)), value(2));  // by its sign
+            auto covered = hn::And(hn::And(row, hn::Not(hn::Gt(hn::Set(di, i), across))), hn::Gt(outside, none));
+            covered = hn::And(covered, hn::And(hn::And(hn::Gt(x, none), hn::Lt(x, width)),
+                                               hn::And(hn::Gt(y, none), hn::Lt(y, height))));
+            if (hn::AllFalse(di, covered)) continue;
+            V near = hn::MulAdd(by_x, hn::Set(d, static_cast<float>(i)),
+                                hn::MulAdd(by_y, hn::Set(d, static_cast<float>(j)), at_corner));
+            near = hn::Max(hn::Min(near, most), least);
+            // As tile_lane() has it.
+            const VI block =
+                hn::Add(hn::Mul(hn::ShiftRight<4>(y), hn::Set(di, static_cast<int32_t>(tile.blocks_across))),
+                        hn::ShiftRight<4>(x));
+            auto bits = [&](VI v) { return hn::And(v, three); };
+            const VI packet = hn::Add(hn::ShiftLeft<2>(bits(hn::ShiftRight<2>(y))), bits(hn::ShiftRight<2>(x)));
+            const VI lane = hn::Add(hn::ShiftLeft<2>(bits(y)), bits(x));
+            alignas(64) int32_t at[kMostLanes];
+            alignas(64) float nearness[kMostLanes];
+            hn::Store(hn::Add(hn::ShiftLeft<8>(block), hn::Add(hn::ShiftLeft<4>(packet), lane)), di, at);
+            hn::Store(near, d, nearness);
+            uint8_t mask[8] = {};
+            hn::StoreMaskBits(di, covered, mask);
+            uint64_t left = 0;
+            std::memcpy(&left, mask, sizeof left);
+            for (; left; left &= left - 1) {
+                const auto m = static_cast<uint32_t>(std::countr_zero(left));
+                draw_pixel(static_cast<size_t>(at[m]), nearness[m], first_key + m, tile);
+            }
+        }
+    }
+}
+
 void draw_triangle_lanes(const PlacedCluster& c, uint32_t first_key, const VisibilityTile::Buffers& tile) {
     const hn::ScalableTag<float> d;
     const hn::RebindToSigned<decltype(d)> di;
@@ -314,13 +382,17 @@ void draw_triangle_lanes(const PlacedCluster& c, uint32_t first_key, const Visib
         const V step_x = hn::Mul(scale, hn::MulSub(n1, dy2, hn::Mul(n2, dy1))),
                 step_y = hn::Mul(scale, hn::MulSub(n2, dx1, hn::Mul(n1, dx2)));
         const V pixel = hn::Set(d, 1.0f / kSubpixels);
-        hn::Store(hn::MulAdd(hn::Mul(real(hn::Sub(corner_x, x0)), pixel), step_x,
-                             hn::MulAdd(hn::Mul(real(hn::Sub(corner_y, y0)), pixel), step_y, near0)),
-                  d, at_corner);
+        const V near_corner = hn::MulAdd(hn::Mul(real(hn::Sub(corner_x, x0)), pixel), step_x,
+                                         hn::MulAdd(hn::Mul(real(hn::Sub(corner_y, y0)), pixel), step_y, near0)),
+                near_least = hn::Min(near0, hn::Min(near1, near2)), near_most = hn::Max(near0, hn::Max(near1, near2));
+        const VI few = hn::Set(di, kFewPixels), across = hn::Sub(i1, i0), up = hn::Sub(j1, j0);
+        const auto tiny = hn::And(hn::And(wanted, small), hn::And(hn::Lt(across, few), hn::Lt(up, few)));
+        wanted = hn::AndNot(tiny, wanted);
+        hn::Store(near_corner, d, at_corner);
         hn::Store(step_x, d, by_x);
         hn::Store(step_y, d, by_y);
-        hn::Store(hn::Min(near0, hn::Min(near1, near2)), d, least);
-        hn::Store(hn::Max(near0, hn::Max(near1, near2)), d, most);
+        hn::Store(near_least, d, least);
+        hn::Store(near_most, d, most);
         alignas(64) int32_t begin_i[kMostLanes], begin_j[kMostLanes], end_i[kMostLanes], end_j[kMostLanes],
             is_wanted[kMostLanes], is_small[kMostLanes];
         hn::Store(i0, di, begin_i);
@@ -349,6 +421,8 @@ void draw_triangle_lanes(const PlacedCluster& c, uint32_t first_key, const Visib
             for (const auto& corners : c.set.corners) is_clipped |= is_cut[corners[cluster.first + triangle]] != 0;
             draw_any(c, triangle, first_key + triangle, tile, x, y, is_clipped);
         }
+        draw_few(tiny, i0, j0, across, up, edge, a, b, near_corner, step_x, step_y, near_least, near_most,
+                 first_key + k, tile);
     }
 }
 
