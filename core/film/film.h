@@ -1,6 +1,7 @@
 // The film: samples become pixels here. Methods hand in blocks of 16 × 16 pixels on a grid fixed to the picture.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -62,6 +63,7 @@ class BlockSums {
     std::array<float*, 4> combined() const {
         return {channel(kCombined, 0), channel(kCombined, 1), channel(kCombined, 2), channel(kCombined, 3)};
     }
+    void clear() const { std::fill_n(values_, passes_->channels() * kBatch, 0.0f); }
     // Adds a colour or vector to a pass that was asked for; without effect otherwise.
     void add(PassId pass, int lane, const Vec3& v) const {
         if (float* values = channel(pass, 0))

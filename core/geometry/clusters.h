@@ -2,6 +2,7 @@
 // done once (its bounds, its vertices).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -28,6 +29,8 @@ struct ClusterSet {
     std::vector<Cluster> clusters;
     std::vector<uint32_t> primitives;  // triangles of the surface, or edges
     std::vector<uint32_t> vertices;    // of the mesh
+    // Of triangles, roughly: the directions of their normals, times 127.
+    std::vector<std::array<int8_t, 3>> normals;
     // Per primitive, which of the cluster's vertices its corners are. Padded, to be read in whole vectors.
     std::vector<uint8_t> corners[3];
 };

@@ -185,7 +185,7 @@ void LineDrawing::resolve(uint32_t block_x, uint32_t block_y, size_t place, Work
     if (plain) return;
 
     if (sums.channel(kPosition, 0))
-        make_directions(view, {block_x * kBlockSide, block_y * kBlockSide}, w.origins, w.directions);
+        make_directions(view, BlockSamples(block_x * kBlockSide, block_y * kBlockSide), w.origins, w.directions);
     const uint32_t* const keys = w.lines.keys(place);
     for (int i = 0; i < kBatch; ++i) {
         const bool any = keys[i] != kNothing;

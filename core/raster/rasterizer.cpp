@@ -3,6 +3,7 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "base/clock.h"
@@ -36,11 +37,25 @@ struct Workspace : Shading {
     // Of all pixels, where surfaces have holes.
     std::vector<LaneVec3> throughput;
     std::vector<uint8_t> first;
+    std::vector<uint32_t> keys;    // of all pixels, sample by sample
+    std::vector<uint8_t> layered;  // of blocks: they show surfaces that are seen through
+    LaneVec3 shares;
 
     LaneVec3 origins, directions;
     Points points;
     uint8_t missed[kBatch];
 };
+
+// Whether what a batch shows lets through what lies behind it.
+bool is_seen_through(const Workspace& w) {
+    if (!w.points.any_holes && !w.points.any_transmission) return false;
+    for (int i = 0; i < kBatch; ++i)
+        if (w.points.slot[i] != kNoSlot &&
+            (w.coefficients.alpha[i] < 1 ||
+             (w.points.any_transmission && w.coefficients.transmission.get(i) != Vec3(0, 0, 0))))
+            return true;
+    return false;
+}
 
 // A render's constants.
 struct Rasterizer {
@@ -52,7 +67,7 @@ struct Rasterizer {
     View view;
     Projection projection;
     std::vector<SampleOffset> pattern;
-    uint32_t light_samples = 1;  // of each shaded point
+    uint32_t light_samples = 1;  // of a pixel
     Illumination illumination;
     bool wants_shadow_pass;
     DrawList list;
@@ -63,10 +78,20 @@ struct Rasterizer {
     void prepare();
     void shade_all_vertices(const std::vector<uint8_t>& wanted);
     void tile(const TileWork& work) const;
+    bool see(const TileWork& work, uint32_t number, int layer, Workspace& w) const;
+    // Surfaces once for all samples of a pixel that they cover.
+    void once(const TileWork& work, Workspace& w) const;
+    bool merge(uint32_t place, Workspace& w) const;
+    bool is_one_surface(uint32_t key, uint32_t other) const;
+    // Layers of surfaces, sample by sample.
     void sample(const TileWork& work, uint32_t number, Workspace& w) const;
     bool block(uint32_t place, const SampleOffset& offset, uint32_t sample, int layer, Workspace& w) const;
-    void shade(const BlockSamples& samples, uint32_t sample, int layer, Workspace& w) const;
-    void illuminate(uint32_t block_x, uint32_t block_y, uint32_t number, Coherence coherence, const Points& points,
+    struct LightShare {
+        uint32_t first, count;  // of the pixel's light samples
+        Coherence coherence;
+    };
+    void shade(const BlockSamples& samples, float footprint, const LightShare& lights, Workspace& w) const;
+    void illuminate(uint32_t block_x, uint32_t block_y, const LightShare& lights, const Points& points,
                     Shading& w) const;
     PickedScanLine pick(uint32_t x, uint32_t y);
     PickedScanLine scan(uint32_t slot, uint32_t face, bool behind, double x, double y) const;
@@ -91,11 +116,8 @@ Rasterizer::Rasterizer(const RenderJob& of, Evaluation where, const char* method
     if (evaluation == Evaluation::ambient && illumination.ambient == Vec3(0, 0, 0))
         illumination.ambient = Vec3(1, 1, 1);
     if (std::any_of(snapshot.lights.begin(), snapshot.lights.end(),
-                    [](const ReadyLight& light) { return light.is_sampled(); })) {
-        // Vertices are shaded once for all samples.
-        const uint32_t shadings = evaluation == Evaluation::vertex ? 1 : job.settings.samples;
-        light_samples = (of.settings.samples + shadings - 1) / shadings;
-    }
+                    [](const ReadyLight& light) { return light.is_sampled(); }))
+        light_samples = of.settings.samples;
 }
 
 // Runs in the current arena.
@@ -108,30 +130,31 @@ void Rasterizer::prepare() {
     shade_all_vertices(wanted);
 }
 
-// The terms of the equation at points whose coefficients are known. `number`: of the light samples that come first.
-void Rasterizer::illuminate(uint32_t block_x, uint32_t block_y, uint32_t number, Coherence coherence,
-                            const Points& points, Shading& w) const {
+// The terms of the equation at points whose coefficients are known.
+void Rasterizer::illuminate(uint32_t block_x, uint32_t block_y, const LightShare& lights, const Points& points,
+                            Shading& w) const {
     add_ambient(points, w.coefficients, illumination.ambient, w.radiance);
     if (evaluation == Evaluation::ambient) return;
-    const bool one = light_samples == 1;
+    const bool one = lights.count == 1;
     for (int c = 0; c < 3 && !one; ++c) std::fill_n(w.lit[c], kBatch, 0.0f);
     if (wants_shadow_pass) w.arriving.clear();
     ShadowCounts shadows;
-    for (uint32_t s = number; s < number + light_samples && !*job.cancelled; ++s)
+    for (uint32_t s = lights.first; s < lights.first + lights.count && !*job.cancelled; ++s)
         add_lights(
-            snapshot, illumination, coherence,
+            snapshot, illumination, lights.coherence,
             [&](uint32_t pair, float* u, float* v) { random_pair(block_x, block_y, job.settings.seed, s, pair, u, v); },
             points, w.coefficients, one ? w.radiance : w.lit, wants_shadow_pass ? &w.arriving : nullptr, w.lights,
             w.program, shadows);
-    const float share = 1 / static_cast<float>(light_samples);
+    const float share = 1 / static_cast<float>(lights.count);
     for (int c = 0; c < 3 && !one; ++c)
         for (int i = 0; i < kBatch; ++i) w.radiance[c][i] += share * w.lit[c][i];
     job.counts->shadow_rays += shadows.rays;
     job.counts->shadow_time += shadows.nanoseconds;
 }
 
-// What the method shows at the points of a block, into w.radiance.
-void Rasterizer::shade(const BlockSamples& samples, uint32_t sample, int layer, Workspace& w) const {
+// What the method shows at the points of a block, into w.radiance. `footprint`: the side of what a sample stands for,
+// in pixels.
+void Rasterizer::shade(const BlockSamples& samples, float footprint, const LightShare& lights, Workspace& w) const {
     const ScanLines lines{snapshot, list, projection, samples};
     const bool flat = evaluation == Evaluation::polygon;
     locate_seen(snapshot, flat ? NormalChoice::flat : job.settings.normals(),
@@ -141,9 +164,9 @@ void Rasterizer::shade(const BlockSamples& samples, uint32_t sample, int layer, 
         locate(snapshot, NormalChoice::flat, w.points);
         take_face_normals(snapshot, w.points);
     } else if (snapshot.needs_footprint) {
-        const float scale = std::max(0.125f, 1 / std::sqrt(static_cast<float>(pattern.size())));
         make_footprints(
-            {w.directions, view.perspective, view.x * (view.step_x * scale), view.y * (view.step_y * scale)}, w.points);
+            {w.directions, view.perspective, view.x * (view.step_x * footprint), view.y * (view.step_y * footprint)},
+            w.points);
     }
     if (job.settings.scan_line && evaluation == Evaluation::pixel)
         scan_normals(lines, job.settings.normals(), w.points);
@@ -151,8 +174,112 @@ void Rasterizer::shade(const BlockSamples& samples, uint32_t sample, int layer, 
     if (evaluation == Evaluation::vertex)
         return job.settings.scan_line ? scan_colors(lines, colors, w.points, w.radiance)
                                       : interpolate_colors(snapshot, colors, w.points, w.radiance);
-    illuminate(samples.x / kBlockSide, samples.y / kBlockSide, sample * light_samples,
-               layer == 0 && !flat ? Coherence::coherent : Coherence::incoherent, w.points, w);
+    illuminate(samples.x / kBlockSide, samples.y / kBlockSide, lights, w.points, w);
+}
+
+// Draws what a sample sees, or what lies behind that. Returns false where the render was cancelled.
+bool Rasterizer::see(const TileWork& work, uint32_t number, int layer, Workspace& w) const {
+    const auto start = Clock::now();
+    w.visibility.begin(projection, pattern[number].x, pattern[number].y, layer > 0);
+    for (const uint32_t cluster : tiles.of(work)) {
+        if (*job.cancelled) return false;
+        w.visibility.draw(projection, list, cluster);
+    }
+    job.counts->primary_time += nanoseconds(start, Clock::now());
+    return true;
+}
+
+// Whether two triangles of different keys are parts of one surface that look alike: one face, or smooth neighbours of
+// one material.
+bool Rasterizer::is_one_surface(uint32_t key, uint32_t other) const {
+    constexpr int kAlike = 15200;  // 127² times the cosine of 20°
+    if (key == kNothing || other == kNothing) return false;
+    const DrawnCluster &a = list.clusters[key / Cluster::kMostPrimitives],
+                       &b = list.clusters[other / Cluster::kMostPrimitives];
+    if (a.slot != b.slot) return false;
+    const PlacedSurface& surface = *list.surfaces[a.slot];
+    const ClusterSet& set = *list.sets[a.slot];
+    const uint32_t at_a = set.clusters[a.cluster].first + key % Cluster::kMostPrimitives,
+                   at_b = set.clusters[b.cluster].first + other % Cluster::kMostPrimitives;
+    const uint32_t face_a = surface.face(set.primitives[at_a]), face_b = surface.face(set.primitives[at_b]);
+    if (face_a == face_b) return true;
+    if (evaluation == Evaluation::polygon || surface.face_material(face_a) != surface.face_material(face_b))
+        return false;
+    const auto &n = set.normals[at_a], &m = set.normals[at_b];
+    return n[0] * m[0] + n[1] * m[1] + n[2] * m[2] > kAlike;
+}
+
+// A block whose samples' keys are known, each surface of a pixel shaded once, at its sample that is nearest to the
+// pixel's centre. Returns false, with nothing added, where a surface is seen through.
+bool Rasterizer::merge(uint32_t place, Workspace& w) const {
+    const auto samples = static_cast<uint32_t>(pattern.size());
+    const uint32_t* const keys = &w.keys[size_t{place} * kBatch];
+    const size_t stride = w.visibility.pixels();
+    const uint32_t across = w.visibility.blocks_across(),
+                   x = static_cast<uint32_t>(w.visibility.x0()) + place % across * kBlockSide,
+                   y = static_cast<uint32_t>(w.visibility.y0()) + place / across * kBlockSide;
+    BlockSamples at(x, y, pattern[0].x, pattern[0].y);
+    const BlockSums sums = job.film->block(x / kBlockSide, y / kBlockSide);
+    uint32_t left[kBatch];  // samples that are not yet shown, by their bits
+    std::fill_n(left, kBatch, samples == 32 ? ~0u : (1u << samples) - 1);
+    uint8_t first[kBatch] = {};
+    bool any_left = true;
+    for (uint32_t round = 0; any_left; ++round) {
+        uint32_t shown[kBatch];
+        bool any_missed = false, any_seen = false;
+        any_left = false;
+        for (uint32_t i = 0; i < kBatch; ++i) {
+            w.missed[i] = 0;
+            shown[i] = kNothing;
+            if (left[i] == 0) continue;
+            const auto nearest = static_cast<uint32_t>(std::countr_zero(left[i]));
+            const uint32_t key = keys[nearest * stride + i];
+            uint32_t alike = 0;
+            for (uint32_t rest = left[i]; rest; rest &= rest - 1) {
+                const auto s = static_cast<uint32_t>(std::countr_zero(rest));
+                const uint32_t other = keys[s * stride + i];
+                if (other == key || is_one_surface(key, other)) alike |= 1u << s;
+            }
+            left[i] &= ~alike;
+            const auto share = static_cast<float>(std::popcount(alike));
+            const auto lane = static_cast<int>(i);
+            w.shares.set(lane, {share, share, share});
+            if (round > 0) at.set(lane, pattern[nearest].x, pattern[nearest].y);
+            shown[i] = key;
+            w.missed[i] = key == kNothing;
+            any_missed |= key == kNothing;
+            any_seen |= key != kNothing;
+            any_left |= left[i] != 0;
+        }
+        if (any_seen || snapshot.world.texture != TRP_NO_ID) make_directions(view, at, w.origins, w.directions);
+        if (any_missed) add_background(snapshot, w.directions, w.missed, &w.shares, job.settings.transparent, sums);
+        if (any_seen) {
+            read_keys(list, shown, w.points);
+            shade(at, 1, {0, light_samples, Coherence::incoherent}, w);
+            if (is_seen_through(w)) {
+                sums.clear();
+                return false;
+            }
+            add_surfaces(
+                {snapshot, w.points, w.coefficients, w.radiance, &w.shares, wants_shadow_pass ? &w.arriving : nullptr},
+                round == 0 ? first : nullptr, sums);
+        }
+        if (round == 0) finish_depth(first, sums);
+    }
+    job.film->add_samples(x / kBlockSide, y / kBlockSide, samples);
+    return true;
+}
+
+void Rasterizer::once(const TileWork& work, Workspace& w) const {
+    const uint32_t blocks = w.visibility.blocks_across() * w.visibility.blocks_up();
+    w.keys.resize(pattern.size() * w.visibility.pixels());
+    for (uint32_t s = 0; s < pattern.size(); ++s) {
+        if (!see(work, s, 0, w)) return;
+        std::copy_n(w.visibility.keys(0), w.visibility.pixels(), &w.keys[s * w.visibility.pixels()]);
+    }
+    const auto start = Clock::now();
+    for (uint32_t place = 0; place < blocks && !*job.cancelled; ++place) w.layered[place] = !merge(place, w);
+    job.counts->shading_time += nanoseconds(start, Clock::now());
 }
 
 // One layer of a sample at a block. Returns whether something may be seen behind it.
@@ -170,8 +297,7 @@ bool Rasterizer::block(uint32_t place, const SampleOffset& offset, uint32_t samp
         any_seen |= keys[i] != kNothing;
     }
     if (!any_missed && !any_seen) return false;
-    const BlockSamples samples{x, y, 0.5f + static_cast<float>(offset.x) / kSubpixels,
-                               0.5f + static_cast<float>(offset.y) / kSubpixels};
+    const BlockSamples samples(x, y, offset.x, offset.y);
     if (any_seen || snapshot.world.texture != TRP_NO_ID) make_directions(view, samples, w.origins, w.directions);
     const BlockSums sums = job.film->block(x / kBlockSide, y / kBlockSide);
     if (any_missed) add_background(snapshot, w.directions, w.missed, throughput, job.settings.transparent, sums);
@@ -180,7 +306,11 @@ bool Rasterizer::block(uint32_t place, const SampleOffset& offset, uint32_t samp
     uint8_t* first = layered ? &w.first[size_t{place} * kBatch] : own_first;
     if (any_seen) {
         read_keys(list, keys, w.points);
-        shade(samples, sample, layer, w);
+        const auto count = static_cast<uint32_t>(pattern.size()), lights = (light_samples + count - 1) / count;
+        shade(samples, std::max(0.125f, 1 / std::sqrt(static_cast<float>(count))),
+              {sample * lights, lights,
+               layer == 0 && evaluation != Evaluation::polygon ? Coherence::coherent : Coherence::incoherent},
+              w);
         add_surfaces(
             {snapshot, w.points, w.coefficients, w.radiance, throughput, wants_shadow_pass ? &w.arriving : nullptr},
             sample == 0 ? first : nullptr, sums);
@@ -201,7 +331,6 @@ bool Rasterizer::block(uint32_t place, const SampleOffset& offset, uint32_t samp
 }
 
 void Rasterizer::sample(const TileWork& work, uint32_t number, Workspace& w) const {
-    const SampleOffset& offset = pattern[number];
     const uint32_t blocks = w.visibility.blocks_across() * w.visibility.blocks_up();
     if (snapshot.seen_through) {
         w.throughput.resize(blocks);
@@ -211,23 +340,18 @@ void Rasterizer::sample(const TileWork& work, uint32_t number, Workspace& w) con
     }
     bool any_left = true;
     for (int layer = 0; layer < kGreatestLayers && any_left; ++layer) {
+        if (!see(work, number, layer, w)) return;
         const auto start = Clock::now();
-        w.visibility.begin(projection, offset.x, offset.y, layer > 0);
-        for (const uint32_t cluster : tiles.of(work)) {
-            if (*job.cancelled) return;
-            w.visibility.draw(projection, list, cluster);
-        }
-        const auto drawn = Clock::now();
         any_left = false;
         for (uint32_t place = 0; place < blocks; ++place) {
             if (*job.cancelled) return;
-            any_left |= block(place, offset, number, layer, w);
+            if (w.layered[place]) any_left |= block(place, pattern[number], number, layer, w);
         }
-        job.counts->primary_time += nanoseconds(start, drawn);
-        job.counts->shading_time += nanoseconds(drawn, Clock::now());
+        job.counts->shading_time += nanoseconds(start, Clock::now());
     }
     if (number > 0 || !snapshot.seen_through || !job.film->passes().has(kDepth)) return;
     for (uint32_t place = 0; place < blocks; ++place) {
+        if (!w.layered[place]) continue;
         finish_depth(&w.first[size_t{place} * kBatch],
                      job.film->block(work.block_x0 + place % w.visibility.blocks_across(),
                                      work.block_y0 + place / w.visibility.blocks_across()));
@@ -240,6 +364,9 @@ void Rasterizer::tile(const TileWork& work) const {
     w->visibility.place(static_cast<int32_t>(work.block_x0 * kBlockSide),
                         static_cast<int32_t>(work.block_y0 * kBlockSide), work.block_x1 - work.block_x0,
                         work.block_y1 - work.block_y0);
+    w->layered.assign(size_t{w->visibility.blocks_across()} * w->visibility.blocks_up(), 1);
+    if (pattern.size() > 1) once(work, *w);
+    if (std::find(w->layered.begin(), w->layered.end(), 1) == w->layered.end()) return;
     for (uint32_t s = work.first_sample; s < work.end_sample; ++s) sample(work, s, *w);
 }
 
@@ -252,7 +379,7 @@ void Rasterizer::shade_all_vertices(const std::vector<uint8_t>& wanted) {
                            locate(snapshot, job.settings.normals(), points, behind ? Side::back : Side::front);
                            evaluate(snapshot, points, w->coefficients, w->program);
                            // The random sequence of a block far outside of any film.
-                           illuminate(batch, ~slot, 0, Coherence::incoherent, points, *w);
+                           illuminate(batch, ~slot, {0, light_samples, Coherence::incoherent}, points, *w);
                            radiance = w->radiance;
                        });
 }
@@ -260,7 +387,7 @@ void Rasterizer::shade_all_vertices(const std::vector<uint8_t>& wanted) {
 // The nearest surface at the centre of a pixel that is not a hole, and its scan line. Runs in the current arena.
 PickedScanLine Rasterizer::pick(uint32_t x, uint32_t y) {
     list = make_draw_list(snapshot, projection, Primitives::triangles, 0);
-    const BlockSamples samples{x / kBlockSide * kBlockSide, y / kBlockSide * kBlockSide};
+    const BlockSamples samples(x / kBlockSide * kBlockSide, y / kBlockSide * kBlockSide);
     const auto lane = static_cast<int>(lane_at(x % kBlockSide, y % kBlockSide));
     const auto w = std::make_unique<Workspace>();
     w->visibility.place(static_cast<int32_t>(samples.x), static_cast<int32_t>(samples.y), 1, 1);

@@ -33,6 +33,9 @@ std::vector<SampleOffset> sample_pattern(const Settings& settings) {
     // Hammersley's points, each in the middle of its cell.
     for (uint32_t i = 0; i < count; ++i)
         pattern[i] = {place(filter, (i + 0.5) / count), place(filter, std::min(mirrored(i) + 0.5 / count, 0.999))};
+    const auto distance2 = [](const SampleOffset& o) { return o.x * o.x + o.y * o.y; };
+    std::stable_sort(pattern.begin(), pattern.end(),
+                     [&](const SampleOffset& a, const SampleOffset& b) { return distance2(a) < distance2(b); });
     return pattern;
 }
 

@@ -11,7 +11,7 @@ struct SampleOffset {
     int32_t x = 0, y = 0;  // from the pixel's centre, in 1/256 pixel
 };
 
-// Settings::raster_samples of them; a single one lies in the centre.
+// Settings::raster_samples of them, those that are nearest to the centre first; a single one lies in the centre.
 std::vector<SampleOffset> sample_pattern(const Settings& settings);
 
 // How far from its pixel a sample may lie, in whole pixels.

@@ -23,8 +23,8 @@ void for_each_lane(const ScanLines& lines, const Points& points, Take&& take) {
         }
         const auto [x, y] = pixel_of_lane(i);
         take(i, surface,
-             polygon->at(static_cast<double>(lines.samples.x + x) + static_cast<double>(lines.samples.offset_x),
-                         static_cast<double>(lines.samples.y + y) + static_cast<double>(lines.samples.offset_y)));
+             polygon->at(static_cast<double>(lines.samples.x + x) + static_cast<double>(lines.samples.offset_x[i]),
+                         static_cast<double>(lines.samples.y + y) + static_cast<double>(lines.samples.offset_y[i])));
     }
 }
 

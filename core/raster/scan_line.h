@@ -65,7 +65,7 @@ struct ScanLines {
     const Snapshot& snapshot;
     const DrawList& list;
     const Projection& projection;
-    BlockSamples samples;
+    const BlockSamples& samples;
 };
 void scan_colors(const ScanLines& lines, const SceneColors& colors, const Points& points, LaneVec3& radiance);
 void scan_normals(const ScanLines& lines, NormalChoice choice, Points& points);

@@ -18,8 +18,8 @@ void make_direction_lanes(const View& view, const BlockSamples& samples, LaneVec
     for (int i = 0; i < kBatch; i += static_cast<int>(hn::Lanes(d))) {
         auto px = hn::Zero(du), py = hn::Zero(du);
         pixel_of(d, samples.x / kBlockSide, samples.y / kBlockSide, i, px, py);
-        auto place = [&](auto pixel, float offset, float step, float begin) {
-            const V at = hn::Add(hn::ConvertTo(d, hn::BitCast(di, pixel)), hn::Set(d, offset));
+        auto place = [&](auto pixel, const float* offset, float step, float begin) {
+            const V at = hn::Add(hn::ConvertTo(d, hn::BitCast(di, pixel)), hn::Load(d, offset + i));
             return hn::MulAdd(at, hn::Set(d, step), hn::Set(d, begin));
         };
         const V x = place(px, samples.offset_x, view.step_x, view.left),
