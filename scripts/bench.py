@@ -61,6 +61,9 @@ BENCHMARKS = [
     raster("phong_100k", 0.333, "--side", "91"),
     raster("phong_layers", 0.4, "--shape", "layers"),
     raster("phong_1m_4_samples", 0.25, "--side", "289", "--samples", "4"),
+    raster("wireframe_1m", 0.25, "--side", "289", "--method", "wireframe"),
+    raster("hidden_line_1m", 0.25, "--side", "289", "--method", "hidden_line"),
+    Benchmark(["raster.scaling"], "raster_bench", "", ["--name", "raster.scaling", "--shape", "scaling"]),
     Benchmark(["edit", "cancel"], "edit_bench", "gallery", ["--edit-goal", "0.1", "--cancel-goal", "0.1"]),
 ]
 

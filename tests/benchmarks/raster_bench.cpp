@@ -95,11 +95,8 @@ Scene make_scene(const ClassicScene& classic, const IndexedMesh& mesh, uint32_t 
     return scene;
 }
 
-void measure(const Options& options) {
-    const ClassicScene classic;
-    const IndexedMesh mesh = options.shape == "layers" ? four_layers(classic) : cube_sphere(options.side);
-    const Scene scene = make_scene(classic, mesh, options.threads);
-    const auto render = triptych::cli::make_render(scene.get(), options.method);
+triptych::cli::RenderHandle make_render(TrpScene* scene, const ClassicScene& classic, const Options& options) {
+    auto render = triptych::cli::make_render(scene, options.method);
     check(trp_render_set_film(render.get(), options.width, options.height, 0, 0, 0, 0));
     const std::string ambient = std::to_string(classic.ambient);
     for (const auto& [name, value] : std::initializer_list<std::pair<const char*, std::string>>{
@@ -113,6 +110,42 @@ void measure(const Options& options) {
              {"lines.paper", "0,0,0"},
              {"shading.ambient", ambient + "," + ambient + "," + ambient}})
         check(trp_render_set(render.get(), name, value.c_str()));
+    return render;
+}
+
+// How the time of a frame grows with the triangles, and falls with the threads.
+void measure_scaling(const Options& options) {
+    const ClassicScene classic;
+    const auto seconds_of = [&](TrpRender* render) {
+        std::vector<Cost> costs;
+        for (uint32_t i = 0; i < options.repeats + 1; ++i) {
+            const Cost cost = cost_of([&] { check(trp_render_run(render, nullptr)); });
+            if (i > 0) costs.push_back(cost);
+        }
+        return median_wall(costs);
+    };
+    double last = 0;
+    for (const uint32_t side : {29u, 91u, 289u, 913u}) {
+        const IndexedMesh mesh = cube_sphere(side);
+        const Scene scene = make_scene(classic, mesh, options.threads);
+        const auto render = make_render(scene.get(), classic, options);
+        const double seconds = seconds_of(render.get());
+        const size_t triangles = mesh.indices.size() / 3;
+        print_value(options.name + "." + std::to_string(triangles), seconds, "s");
+        if (side == 913) print_value(options.name + ".ten_times_1m", seconds / (10 * last), "of 10 frames", 1.2);
+        if (side == 289) {
+            check(trp_render_set(render.get(), "threads", "1"));
+            print_value(options.name + ".two_threads", seconds / seconds_of(render.get()), "of one thread", 1 / 1.8);
+        }
+        last = seconds;
+    }
+}
+
+void measure(const Options& options) {
+    const ClassicScene classic;
+    const IndexedMesh mesh = options.shape == "layers" ? four_layers(classic) : cube_sphere(options.side);
+    const Scene scene = make_scene(classic, mesh, options.threads);
+    const auto render = make_render(scene.get(), classic, options);
     GlPeer peer(classic, options.width, options.height, options.samples, options.threads);
     peer.set_mesh(mesh);
     const GlPeer::Drawing drawing = options.method == "wireframe"     ? GlPeer::Drawing::wireframe
@@ -164,8 +197,11 @@ int main(int argc, char** argv) {
     Options options;
     CLI::App app("The rasterizer beside llvmpipe");
     app.add_option("--name", options.name, "Name of the figures")->required();
-    app.add_option("--shape", options.shape, "sphere, or layers: four squares that fill the view")
-        ->check(CLI::IsMember({"sphere", "layers"}));
+    app.add_option(
+           "--shape", options.shape,
+           "sphere; layers: four squares that fill the view; scaling: spheres from 10^4 to 10^7 triangles, without "
+           "the peer")
+        ->check(CLI::IsMember({"sphere", "layers", "scaling"}));
     app.add_option("--method", options.method, "phong, wireframe or hidden_line")
         ->check(CLI::IsMember({"phong", "wireframe", "hidden_line"}));
     app.add_option("--side", options.side, "Quads along a sixth of the sphere")->capture_default_str();
@@ -178,5 +214,5 @@ int main(int argc, char** argv) {
         ->capture_default_str();
     app.add_option("--goal", options.goal, "The greatest ratio wanted");
     CLI11_PARSE(app, argc, argv);
-    return run("raster_bench", [&] { measure(options); });
+    return run("raster_bench", [&] { (options.shape == "scaling" ? measure_scaling : measure)(options); });
 }
