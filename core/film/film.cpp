@@ -48,9 +48,10 @@ Film::Film(const Window& window, const PassList& passes) : window_(window), pass
     const size_t blocks = size_t{blocks_across_} * blocks_up;
     block_samples_.assign(blocks, 0);
     const size_t block = kBatch * static_cast<size_t>(passes.channels());
-    // Zeroed pages come from the system as they are first touched, by the threads that fill them.
+    // Cleared block by block, by the threads that fill them.
+    begun_.assign(blocks, 0);
     const size_t bytes = blocks * block * sizeof(float);
-    values_.reset(static_cast<float*>(std::calloc(bytes, 1)));
+    values_.reset(static_cast<float*>(std::malloc(bytes)));
     if (!values_)
         fail(TRP_ERROR_MEMORY, "no memory for a film of {} x {} pixels with {} channels", window.w, window.h,
              passes.channels());
@@ -72,7 +73,13 @@ float* Film::values(uint32_t block) const {
 }
 
 BlockSums Film::block(uint32_t block_x, uint32_t block_y) {
-    return {passes_, values(block_index(block_x, block_y))};
+    const uint32_t index = block_index(block_x, block_y);
+    const BlockSums sums(passes_, values(index));
+    if (!begun_[index]) {
+        begun_[index] = 1;
+        sums.clear();
+    }
+    return sums;
 }
 
 void Film::add_samples(uint32_t block_x, uint32_t block_y, uint32_t samples) {
@@ -91,7 +98,9 @@ void Film::read(PassId pass, uint32_t x, uint32_t y, uint32_t w, uint32_t h, flo
             for (uint32_t column = begin; column < end; ++column) {
                 const uint32_t lane = lane_at(column % kBlockSide, row % kBlockSide);
                 for (size_t c = 0; c < count; ++c)
-                    *out++ = pass == kSampleCount ? static_cast<float>(samples) : first[c * kBatch + lane] * scale;
+                    *out++ = pass == kSampleCount ? static_cast<float>(samples)
+                             : begun_[block]      ? first[c * kBatch + lane] * scale
+                                                  : 0.0f;
             }
             begin = end;
         }

@@ -292,9 +292,12 @@ bool Rasterizer::block(uint32_t place, const SampleOffset& offset, uint32_t samp
     LaneVec3* const throughput = layered ? &w.throughput[place] : nullptr;
     bool any_missed = false, any_seen = false;
     for (int i = 0; i < kBatch; ++i) {
-        w.missed[i] = keys[i] == kNothing && (!layered || throughput->get(i) != Vec3(0, 0, 0));
-        any_missed |= w.missed[i] != 0;
+        w.missed[i] = keys[i] == kNothing;
         any_seen |= keys[i] != kNothing;
+    }
+    for (int i = 0; i < kBatch; ++i) {
+        if (layered) w.missed[i] &= throughput->get(i) != Vec3(0, 0, 0);
+        any_missed |= w.missed[i] != 0;
     }
     if (!any_missed && !any_seen) return false;
     const BlockSamples samples(x, y, offset.x, offset.y);
