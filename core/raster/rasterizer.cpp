@@ -227,6 +227,7 @@ bool Rasterizer::merge(uint32_t place, Workspace& w) const {
     for (uint32_t round = 0; any_left; ++round) {
         uint32_t shown[kBatch];
         bool any_missed = false, any_seen = false;
+        int most = 0;  // samples of a pixel's surface
         any_left = false;
         for (uint32_t i = 0; i < kBatch; ++i) {
             w.missed[i] = 0;
@@ -241,6 +242,7 @@ bool Rasterizer::merge(uint32_t place, Workspace& w) const {
                 if (other == key || is_one_surface(key, other)) alike |= 1u << s;
             }
             left[i] &= ~alike;
+            most = std::max(most, std::popcount(alike));
             const auto share = static_cast<float>(std::popcount(alike));
             const auto lane = static_cast<int>(i);
             w.shares.set(lane, {share, share, share});
@@ -255,7 +257,8 @@ bool Rasterizer::merge(uint32_t place, Workspace& w) const {
         if (any_missed) add_background(snapshot, w.directions, w.missed, &w.shares, job.settings.transparent, sums);
         if (any_seen) {
             read_keys(list, shown, w.points);
-            shade(at, 1, {0, light_samples, Coherence::incoherent}, w);
+            const uint32_t lights = (light_samples * static_cast<uint32_t>(most) + samples - 1) / samples;
+            shade(at, 1, {0, lights, Coherence::incoherent}, w);
             if (is_seen_through(w)) {
                 sums.clear();
                 return false;
