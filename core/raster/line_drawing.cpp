@@ -140,8 +140,9 @@ void LineDrawing::add_runs(const DrawnLine& line, const TileReach& reach, Worksp
             const float step = places[1] - places[0],
                         first = places[0] + static_cast<float>(across ? reach.x0 : reach.y0);
             const auto [low, high] = std::minmax({first + step * run.begin, first + step * run.end});
-            for (float k = std::floor(low / period); k * period < high; ++k) {
-                float begin = (k * period - first) / step, end = (k * period + kDash * scale - first) / step;
+            for (int k = static_cast<int>(std::floor(low / period)); static_cast<float>(k) * period < high; ++k) {
+                const float at = static_cast<float>(k) * period - first;
+                float begin = at / step, end = (at + kDash * scale) / step;
                 if (begin > end) std::swap(begin, end);
                 begin = std::max(begin, run.begin), end = std::min(end, run.end);
                 if (begin < end) add(begin, end, line.color);

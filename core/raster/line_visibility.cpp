@@ -151,14 +151,14 @@ void LineVisibility::split(const Segment& s, uint32_t slot, const Edge& edge, st
     clip(s.x[0], dx, tile_.width);
     clip(s.y[0], dy, tile_.height);
     if (from > to) return;
-    const double first = std::max(0.0, std::floor(from * count - 0.5)),
-                 last = std::min(count - 1, std::ceil(to * count));
+    const auto first = static_cast<int>(std::max(0.0, std::floor(from * count - 0.5))),
+               last = static_cast<int>(std::min(count - 1, std::ceil(to * count)));
     Run run{static_cast<float>(first / count), 0, sees_at((first + 0.5) / count)};
-    for (double k = first + 1; k <= last; ++k) {
+    for (int k = first + 1; k <= last; ++k) {
         const bool seen = sees_at((k + 0.5) / count);
         if (seen == run.seen) continue;
         double low = (k - 0.5) / count, high = (k + 0.5) / count;
-        for (int halving = 0; halving < 6; ++halving) {
+        for (int halving = 0; halving < 5; ++halving) {
             const double middle = (low + high) / 2;
             (sees_at(middle) == run.seen ? low : high) = middle;
         }
