@@ -3,8 +3,6 @@
 namespace trp {
 namespace {
 
-constexpr float kNothingSeen = 1e10f;  // depth, as Blender has it
-
 void add_first(const SeenSurfaces& seen, int i, const BlockSums& sums) {
     const Points& points = seen.points;
     const PlacedSurface& surface = seen.snapshot.surfaces[points.slot[i]];

@@ -6,7 +6,8 @@
 
 namespace trp {
 
-inline constexpr int kGreatestLayers = 64;  // of surfaces with holes in a row, one behind the other
+inline constexpr float kNothingSeen = 1e10f;  // depth, as Blender has it
+inline constexpr int kGreatestLayers = 64;    // of surfaces with holes in a row, one behind the other
 
 struct SeenSurfaces {
     const Snapshot& snapshot;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/clock.h"
+#include "film/surface_passes.h"
 #include "raster/edge_classes.h"
 #include "raster/line_tile.h"
 #include "raster/line_visibility.h"
@@ -14,10 +15,9 @@
 namespace trp {
 namespace {
 
-constexpr uint32_t kTileSide = 128;    // pixels: a tile's lines fit a core's cache
-constexpr float kFaint = 0.75f;        // the share of the paper in faint lines
-constexpr float kDash = 4, kGap = 3;   // pixels, times the width of lines that are wider than one
-constexpr float kNothingSeen = 1e10f;  // depth, as Blender has it
+constexpr uint32_t kTileSide = 128;   // pixels: a tile's lines fit a core's cache
+constexpr float kFaint = 0.75f;       // the share of the paper in faint lines
+constexpr float kDash = 4, kGap = 4;  // pixels, times the width of lines that are wider than one
 
 // What a thread works with at a tile.
 struct Workspace {
@@ -54,6 +54,7 @@ struct LineDrawing {
     void tile(const TileWork& work) const;
     void see_faces(const TileWork& work, VisibilityTile& visibility) const;
     void add_edges(uint32_t number, const TileReach& reach, Workspace& w) const;
+    bool cut_far(DrawnLine& line) const;
     void add_runs(const DrawnLine& line, const TileReach& reach, Workspace& w) const;
     // The edge of a line's key; `number` becomes its own in the surface's set.
     const PlacedSurface& edge_of(uint32_t key, uint32_t& number) const;
@@ -79,7 +80,8 @@ void LineDrawing::prepare() {
         far = std::min(far, std::max(cluster.farness, projection.farthest()));
     }
     const auto depth = [&](float nearness) { return view.perspective ? 1 / nearness : -nearness; };
-    if (near > far) cue = {settings.depth_cue, depth(near), depth(far), view.perspective, settings.paper};
+    if (near > far && depth(near) < depth(far))
+        cue = {settings.depth_cue, depth(near), depth(far), view.perspective, settings.paper};
     plain = settings.color_by == LineSettings::ColorBy::line && cue.strength == 0 &&
             (!hides || settings.hidden != LineSettings::Hidden::faint) && job.film->passes().order().size() == 1;
 }
@@ -117,7 +119,7 @@ Vec3 LineDrawing::color_of(const PlacedSurface& surface, uint32_t edge) const {
     return {constants[kDiffuse], constants[kDiffuse + 1], constants[kDiffuse + 2]};
 }
 
-// The line of a whole segment as the parts of it that are seen, and those that are hidden as the settings say.
+// A line as the parts of it that are seen, and those that are hidden as the settings say.
 void LineDrawing::add_runs(const DrawnLine& line, const TileReach& reach, Workspace& w) const {
     const Segment& s = line.segment;
     uint32_t edge = 0;
@@ -125,7 +127,8 @@ void LineDrawing::add_runs(const DrawnLine& line, const TileReach& reach, Worksp
     w.line_visibility.split(s, edges.clusters[line.key / Cluster::kMostPrimitives].slot,
                             surface.surface->edges().edges[edge], w.runs);
     const auto add = [&](float begin, float end, const Vec3& color) {
-        w.drawn.push_back({s, begin, end, color, line.key});
+        begin = std::max(begin, line.begin), end = std::min(end, line.end);
+        if (begin < end) w.drawn.push_back({s, begin, end, color, line.key});
     };
     for (const Run& run : w.runs) {
         if (run.seen) {
@@ -144,11 +147,19 @@ void LineDrawing::add_runs(const DrawnLine& line, const TileReach& reach, Worksp
                 const float at = static_cast<float>(k) * period - first;
                 float begin = at / step, end = (at + kDash * scale) / step;
                 if (begin > end) std::swap(begin, end);
-                begin = std::max(begin, run.begin), end = std::min(end, run.end);
-                if (begin < end) add(begin, end, line.color);
+                add(std::max(begin, run.begin), std::min(end, run.end), line.color);
             }
         }
     }
+}
+
+// Cuts off what lies beyond the camera's far end. Returns false where nothing is left.
+bool LineDrawing::cut_far(DrawnLine& line) const {
+    const float *const near = line.segment.near, farthest = projection.farthest();
+    if (near[0] >= farthest && near[1] >= farthest) return true;
+    if (near[0] <= farthest && near[1] <= farthest) return false;
+    (near[0] < farthest ? line.begin : line.end) = (farthest - near[0]) / (near[1] - near[0]);
+    return true;
 }
 
 // The lines of a cluster of edges into w.drawn.
@@ -160,7 +171,8 @@ void LineDrawing::add_edges(uint32_t number, const TileReach& reach, Workspace& 
         uint32_t edge = 0;
         const PlacedSurface& surface = edge_of(key, edge);
         if (!classes.has(surface, edge)) continue;
-        const DrawnLine line{segments[k], 0, 1, color_of(surface, edge), key};
+        DrawnLine line{segments[k], 0, 1, color_of(surface, edge), key};
+        if (!cut_far(line)) continue;
         if (hides)
             add_runs(line, reach, w);
         else

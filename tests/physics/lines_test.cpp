@@ -560,6 +560,29 @@ TEST(Lines, EdgesThroughTheEyePlaneAreCut) {
     EXPECT_GT(total_ink(image), 50);
 }
 
+TEST(Lines, EdgesEndAtTheFarEnd) {
+    Scene scene;
+    loose_edge(scene, {-2, -0.5f, -2}, {6, -0.5f, -18});  // straight on the film, to the right
+    scene.camera(kIdentity, [](TrpCameraDesc& d) {
+        d.clip_start = 0.1f;
+        d.clip_end = 6;
+        d.field_of_view = 1.6f;
+    });
+    scene.commit();
+    // At depth 6 the edge is at (0, −0.5).
+    const double per_pixel = 2 * std::tan(0.8) / 200;
+    for (const char* method : {"wireframe", "hidden_line"}) {
+        const Image image = draw(scene, 200, 160, method, {{"lines.width", "3"}});
+        const auto inked = [&](double depth) {
+            const double x = (-2 + (depth - 2) / 2) / depth / per_pixel + 100, y = -0.5 / depth / per_pixel + 80;
+            return ink(image, static_cast<int>(x), static_cast<int>(y));
+        };
+        EXPECT_GT(inked(5.5), 0.5f) << method;
+        EXPECT_LT(inked(6.8), 0.02f) << method;
+        EXPECT_LT(inked(12), 0.02f) << method;
+    }
+}
+
 TEST(Lines, ASceneWithoutEdgesIsPaper) {
     Scene scene;
     see_from_above(scene);
