@@ -232,7 +232,7 @@ TrpStatus trp_render_pick_scan_line(const TrpRender* render, uint32_t x, uint32_
             const auto copy = [](const Vec3& from, float* to) { std::copy_n(&from.x, 3, to); };
             for (int k = 0; k < 4; ++k) {
                 const PolygonPoint& end = picked.line.ends[k];
-                out.vertices[k] = end.is_corner() ? picked.surface->mesh->corner_vertices[end.corner] : TRP_NO_ID;
+                out.vertices[k] = end.is_corner() ? picked.surface->mesh->corner_vertices[end.corner] : TRP_NO_VERTEX;
                 copy(picked.values.ends[k], out.values[k]);
             }
             out.alpha = picked.line.alpha, out.beta = picked.line.beta, out.gamma = picked.line.gamma;

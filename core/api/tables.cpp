@@ -10,7 +10,8 @@ namespace trp {
 
 const MethodRow kMethods[] = {
     {"wireframe", "Wireframe", "Every edge of the meshes, hidden or not", wireframe},
-    {"hidden_line", "Hidden Lines", "The edges of the meshes without the parts that lie behind faces", hidden_line},
+    {"hidden_line", "Hidden Lines",
+     "The edges of the meshes without the parts that lie behind faces, whatever these are made of", hidden_line},
     {"visible_surface", "Visible Surfaces", "The nearest surface in each pixel, under ambient light alone",
      visible_surface},
     {"flat", "Flat Shading", "Light and highlight once for each polygon", flat_shading},

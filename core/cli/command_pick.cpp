@@ -20,7 +20,7 @@ struct Options : PictureJob {
 ordered_json side_of(const TrpScanLine& line, int first) {
     ordered_json vertices = ordered_json::array(), values = ordered_json::array();
     for (int k = first; k < first + 2; ++k) {
-        vertices.push_back(line.vertices[k] == TRP_NO_ID ? ordered_json() : ordered_json(line.vertices[k]));
+        vertices.push_back(line.vertices[k] == TRP_NO_VERTEX ? ordered_json() : ordered_json(line.vertices[k]));
         values.push_back(line.values[k]);
     }
     return {{"vertices", vertices}, {"values", values}};
@@ -52,8 +52,8 @@ void print_text(const TrpScanLine& line, const Options& options) {
     const auto triple = [](const float(&v)[3]) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", v[0], v[1], v[2]); };
     const auto end = [&](int k) {
         return fmt::format("{} {}", triple(line.values[k]),
-                           line.vertices[k] == TRP_NO_ID ? "where the near plane cuts"
-                                                         : fmt::format("at vertex {}", line.vertices[k]));
+                           line.vertices[k] == TRP_NO_VERTEX ? "where the near plane cuts"
+                                                             : fmt::format("at vertex {}", line.vertices[k]));
     };
     fmt::print("{} interpolated over face {} of {}\n", options.method == "gouraud" ? "radiance" : "normals", line.face,
                one_line(line.mesh));

@@ -82,8 +82,8 @@ class Film {
 
     const Window& window() const { return window_; }
     const PassList& passes() const { return passes_; }
-    // The block at grid place (block_x, block_y), cleared when it is first asked for: methods add to it, one thread at a
-    // time, and then say how many samples they have added.
+    // The block at grid place (block_x, block_y), cleared when it is first asked for: methods add to it, one thread at
+    // a time, and then say how many samples they have added.
     BlockSums block(uint32_t block_x, uint32_t block_y);
     void add_samples(uint32_t block_x, uint32_t block_y, uint32_t samples);
     // The pixels of a pass, channels interleaved; sums are divided by the number of samples.

@@ -90,7 +90,7 @@ const SettingRow kSettings[] = {
      [](Settings& s, const double* v) { s.lines.width = static_cast<float>(*v); }},
     {TRP_TYPE_ENUM, "lines.color_by", "Colour by",
      "What gives a line its colour: the one line colour, the object's own (viewport) colour, or the diffuse colour of "
-     "its face's material",
+     "its face's material, without textures",
      "", "line", 0, 0, kLineColors, kLineMethods, "",
      [](Settings& s, const double* v) { s.lines.color_by = static_cast<LineSettings::ColorBy>(*v); }},
     {TRP_TYPE_COLOR, "lines.color", "Line", "Colour of all lines", "", "0,0,0", 0, 1e6, nullptr, kLineMethods, "",

@@ -17,17 +17,20 @@ struct Side {
     bool operator<(const Side& o) const { return high < o.high || (high == o.high && face < o.face); }
 };
 
-// Calls take(low, side) for every side of a face and every edge given.
+// Calls take(low, side) for every side of a face that has an area and every edge given.
 template <class Take>
-void for_each_side(const Mesh& mesh, const std::vector<uint32_t>& welded, Take&& take) {
+void for_each_side(const Mesh& mesh, const std::vector<Vec3>& face_normals, const std::vector<uint32_t>& welded,
+                   Take&& take) {
     const auto give = [&](uint32_t from, uint32_t to, uint32_t face, bool marked) {
         const uint32_t a = welded[from], b = welded[to];
         if (a != b) take(std::min(a, b), Side{std::max(a, b), face, a < b, marked});
     };
-    for (uint32_t face = 0; face < mesh.face_count(); ++face)
+    for (uint32_t face = 0; face < mesh.face_count(); ++face) {
+        if (face_normals[face] == Vec3(0, 0, 0)) continue;
         for (uint32_t c = mesh.face_begin(face), end = mesh.face_end(face); c < end; ++c)
             give(mesh.corner_vertices[c], mesh.corner_vertices[c + 1 < end ? c + 1 : mesh.face_begin(face)], face,
                  false);
+    }
     for (size_t e = 0; 2 * e < mesh.edges.size(); ++e)
         give(mesh.edges[2 * e], mesh.edges[2 * e + 1], kNoFace,
              !mesh.edge_flags.empty() && (mesh.edge_flags[e] & TRP_EDGE_MARKED));
@@ -52,14 +55,26 @@ Edge make_edge(uint32_t low, const Side* begin, const Side* end) {
 
 EdgeSet make_edges(const Mesh& mesh) {
     EdgeSet set;
+    set.face_normals.resize(mesh.face_count());
+    parallel_ranges(set.face_normals.size(), 4096, [&](size_t begin, size_t end) {
+        std::vector<Vec3> polygon;
+        for (size_t face = begin; face < end; ++face) {
+            polygon.clear();
+            for (uint32_t c = mesh.face_begin(static_cast<uint32_t>(face));
+                 c < mesh.face_end(static_cast<uint32_t>(face)); ++c)
+                polygon.push_back(mesh.positions[mesh.corner_vertices[c]]);
+            set.face_normals[face] = polygon.size() < 3 ? Vec3(0, 0, 0) : Vec3(newell(polygon).normalized());
+        }
+    });
+
     const std::vector<uint32_t> welded = weld_vertices(mesh);
     // Sides by their lower vertex: those of vertex v from first[v] to first[v + 1].
     std::vector<size_t> first(size_t{mesh.vertex_count} + 1, 0);
-    for_each_side(mesh, welded, [&](uint32_t low, const Side&) { ++first[low + 1]; });
+    for_each_side(mesh, set.face_normals, welded, [&](uint32_t low, const Side&) { ++first[low + 1]; });
     for (uint32_t v = 0; v < mesh.vertex_count; ++v) first[v + 1] += first[v];
     std::vector<Side> sides(first.back());
     std::vector<size_t> next(first.begin(), first.end() - 1);
-    for_each_side(mesh, welded, [&](uint32_t low, const Side& side) { sides[next[low]++] = side; });
+    for_each_side(mesh, set.face_normals, welded, [&](uint32_t low, const Side& side) { sides[next[low]++] = side; });
 
     const bool own = !mesh.edges.empty();
     set.edges.reserve(own ? mesh.edges.size() / 2 : sides.size() / 2);
@@ -73,18 +88,6 @@ EdgeSet make_edges(const Mesh& mesh) {
             at = last;
         }
     }
-
-    set.face_normals.resize(mesh.face_count());
-    parallel_ranges(set.face_normals.size(), 4096, [&](size_t begin, size_t end) {
-        std::vector<Vec3> polygon;
-        for (size_t face = begin; face < end; ++face) {
-            polygon.clear();
-            for (uint32_t c = mesh.face_begin(static_cast<uint32_t>(face));
-                 c < mesh.face_end(static_cast<uint32_t>(face)); ++c)
-                polygon.push_back(mesh.positions[mesh.corner_vertices[c]]);
-            set.face_normals[face] = polygon.size() < 3 ? Vec3(0, 0, 0) : Vec3(newell(polygon).normalized());
-        }
-    });
 
     std::vector<uint32_t> vertices;
     vertices.reserve(2 * set.edges.size());

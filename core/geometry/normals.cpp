@@ -20,14 +20,14 @@ Vec3 face_normal(const Mesh& mesh, uint32_t face) {
     return polygon.size() < 3 ? Vec3(0, 0, 0) : Vec3(newell(polygon).normalized());
 }
 
-Vec3 unit_or_up(const Vec3& v) {
-    const float length = v.length();
-    return length > 0 ? v / length : Vec3(0, 0, 1);
+Vec3 unit_or_up(const Vec3d& v) {
+    const double length = v.length();
+    return length > 0 ? Vec3(v / length) : Vec3(0, 0, 1);
 }
 
 // Adds each face's normal, as it weighs, to sums[group(corner)].
 template <class Group>
-void add_face_normals(const Mesh& mesh, NormalWeight weight, std::vector<Vec3>& sums, Group&& group) {
+void add_face_normals(const Mesh& mesh, NormalWeight weight, std::vector<Vec3d>& sums, Group&& group) {
     std::vector<Vec3> polygon;
     for (uint32_t face = 0; face < mesh.face_count(); ++face) {
         const uint32_t begin = mesh.face_begin(face), n = mesh.face_end(face) - begin;
@@ -35,13 +35,13 @@ void add_face_normals(const Mesh& mesh, NormalWeight weight, std::vector<Vec3>& 
         polygon.clear();
         for (uint32_t k = 0; k < n; ++k) polygon.push_back(mesh.positions[mesh.corner_vertices[begin + k]]);
         const Vec3d twice_area = newell(polygon);
-        const Vec3 normal(weight == NormalWeight::area ? twice_area : twice_area.normalized());
+        const Vec3d normal = weight == NormalWeight::area ? twice_area : twice_area.normalized();
         Vec3 to_previous = (polygon[n - 1] - polygon[0]).normalized();
         for (uint32_t k = 0; k < n; ++k) {
             const Vec3 to_next = (polygon[(k + 1) % n] - polygon[k]).normalized();
             const float angle =
                 weight == NormalWeight::angle ? std::acos(std::clamp(to_next.dot(to_previous), -1.0f, 1.0f)) : 1.0f;
-            sums[group(begin + k)] += normal * angle;
+            sums[group(begin + k)] += normal * static_cast<double>(angle);
             to_previous = -to_next;
         }
     }
@@ -125,13 +125,15 @@ AveragedNormals averaged_normals(const Mesh& mesh, NormalWeight weight, bool wel
     const bool by_corner = std::any_of(mesh.edge_flags.begin(), mesh.edge_flags.end(),
                                        [](uint8_t flags) { return flags & TRP_EDGE_SHARP; });
     if (!by_corner) {
-        std::vector<Vec3> sums(mesh.vertex_count, Vec3(0, 0, 0)), normals(mesh.vertex_count);
+        std::vector<Vec3d> sums(mesh.vertex_count, Vec3d(0, 0, 0));
+        std::vector<Vec3> normals(mesh.vertex_count);
         add_face_normals(mesh, weight, sums, [&](uint32_t corner) { return vertex_of[mesh.corner_vertices[corner]]; });
         for (uint32_t v = 0; v < mesh.vertex_count; ++v) normals[v] = unit_or_up(sums[vertex_of[v]]);
         return {NormalLayer::Domain::vertex, std::move(normals)};
     }
     Groups groups = group_corners(mesh, vertex_of);
-    std::vector<Vec3> sums(mesh.corner_vertices.size(), Vec3(0, 0, 0)), normals(sums.size());
+    std::vector<Vec3d> sums(mesh.corner_vertices.size(), Vec3d(0, 0, 0));
+    std::vector<Vec3> normals(sums.size());
     add_face_normals(mesh, weight, sums, [&](uint32_t corner) { return groups.find(corner); });
     for (uint32_t c = 0; c < normals.size(); ++c) normals[c] = unit_or_up(sums[groups.find(c)]);
     return {NormalLayer::Domain::corner, std::move(normals)};

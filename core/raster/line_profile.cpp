@@ -10,7 +10,7 @@ double share_below(const PixelFilter& filter, double x) {
     const float *const begin = filter.offsets(), *const end = begin + PixelFilter::kSteps + 1;
     if (x < *begin) return 0;
     if (x >= end[-1]) return 1;
-    const float* const next = std::upper_bound(begin, end, static_cast<float>(x));
+    const float* const next = std::upper_bound(begin, end - 1, static_cast<float>(x));
     const double low = next[-1], high = *next;
     return (static_cast<double>(next - 1 - begin) + (x - low) / (high - low)) / PixelFilter::kSteps;
 }

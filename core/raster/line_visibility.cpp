@@ -7,7 +7,7 @@ namespace trp {
 namespace {
 
 // Surfaces that touch hide no edge of each other; relative to the depth.
-constexpr double kTouching = 1e-5;
+constexpr double kTouching = 1e-6;
 
 }  // namespace
 
@@ -58,7 +58,7 @@ LineVisibility::Cover LineVisibility::cover_cut(const Place& p, uint32_t key) co
         near[m] = projection_.perspective() ? 1 : -q[m][2];
         if (!projection_.perspective()) q[m][2] = 1;
     }
-    double determinant = 0, sides[3], nearness = 0;
+    double determinant = 0, sides[3], nearness = 0, steps[2] = {0, 0};
     for (int m = 0; m < 3; ++m) {
         const FilmPoint &a = q[(m + 1) % 3], &b = q[(m + 2) % 3];
         sides[m] = 0;
@@ -66,12 +66,14 @@ LineVisibility::Cover LineVisibility::cover_cut(const Place& p, uint32_t key) co
             const int s = (r + 1) % 3, t = (r + 2) % 3;
             const double product = a[s] * b[t] - a[t] * b[s];
             sides[m] += product * at[r];
+            if (r < 2) steps[r] += product * near[m] / kSubpixels;
             if (m == 0) determinant += product * q[0][r];
         }
         nearness += sides[m] * near[m];
     }
     const double sign = determinant < 0 ? -1 : 1;
-    return {sides[0] * sign > 0 && sides[1] * sign > 0 && sides[2] * sign > 0, nearness, determinant};
+    return {sides[0] * sign > 0 && sides[1] * sign > 0 && sides[2] * sign > 0, nearness, determinant,
+            std::abs(steps[0]) + std::abs(steps[1])};
 }
 
 LineVisibility::Cover LineVisibility::cover(const Place& p, uint32_t key) {
@@ -91,7 +93,10 @@ LineVisibility::Cover LineVisibility::cover(const Place& p, uint32_t key) {
     const double sides[3] = {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
     const bool covers =
         (sides[0] > 0) & (sides[1] > 0) & (sides[2] > 0) || (sides[0] < 0) & (sides[1] < 0) & (sides[2] < 0);
-    return {covers, sides[0] * near[0] + sides[1] * near[1] + sides[2] * near[2], sides[0] + sides[1] + sides[2]};
+    const double step_x = near[0] * (y[1] - y[2]) + near[1] * (y[2] - y[0]) + near[2] * (y[0] - y[1]),
+                 step_y = near[0] * (x[2] - x[1]) + near[1] * (x[0] - x[2]) + near[2] * (x[1] - x[0]);
+    return {covers, sides[0] * near[0] + sides[1] * near[1] + sides[2] * near[2], sides[0] + sides[1] + sides[2],
+            std::abs(step_x) + std::abs(step_y)};
 }
 
 bool LineVisibility::is_own(const Place& p, uint32_t key) {
@@ -111,11 +116,9 @@ bool LineVisibility::sees(const Place& p) {
     for (int k = 0; k < 4; ++k) {
         const auto x = static_cast<int32_t>(left) + (near_x ^ (k & 1)) + static_cast<int32_t>(tile_.x0),
                    y = static_cast<int32_t>(low) + (near_y ^ (k >> 1)) + static_cast<int32_t>(tile_.y0);
-        const bool inside = x >= 0 && y >= 0 && x < static_cast<int32_t>(projection_.width()) &&
-                            y < static_cast<int32_t>(projection_.height());
-        if (inside) keys[count++] = visibility_->key_at(x, y);
+        keys[count++] = visibility_->key_at(std::clamp(x, 0, static_cast<int32_t>(projection_.width()) - 1),
+                                            std::clamp(y, 0, static_cast<int32_t>(projection_.height()) - 1));
     }
-    if (count == 0) return true;
     bool covered = false, nearest_is_before = false;
     for (int k = 0; k < count; ++k) {
         if (keys[k] == kNothing || std::find(keys, keys + k, keys[k]) != keys + k) continue;
@@ -143,7 +146,10 @@ void LineVisibility::split(const Segment& s, uint32_t slot, const Edge& edge, st
     double from = 0, to = 1;
     const auto clip = [&](double begin, double step, double size) {
         const double low = -tile_.reach, high = size - 1 + tile_.reach;
-        if (std::abs(step) < 1e-6) return;
+        if (std::abs(step) < 1e-6) {
+            if (begin < low || begin > high) from = 2;
+            return;
+        }
         const double a = (low - begin) / step, b = (high - begin) / step;
         from = std::max(from, std::min(a, b));
         to = std::min(to, std::max(a, b));

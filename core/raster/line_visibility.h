@@ -44,8 +44,10 @@ class LineVisibility {
     struct Cover {
         bool covers;
         double weighted_nearness, weight;
+        double slack;  // the change of the weighted nearness over a step of the grid
         bool is_before(double nearness) const {
-            return weight > 0 ? weighted_nearness > nearness * weight : weighted_nearness < nearness * weight;
+            return weight > 0 ? weighted_nearness - slack > nearness * weight
+                              : weighted_nearness + slack < nearness * weight;
         }
     };
 

@@ -66,18 +66,23 @@ bool corner_normal(const PlacedSurface& surface, NormalChoice choice, uint32_t f
 ScanPolygon::ScanPolygon(const PlacedSurface& surface, uint32_t face, const FilmTransform& transform,
                          const Projection& projection) {
     const Mesh& mesh = *surface.mesh;
-    const uint32_t begin = mesh.face_begin(face), count = mesh.face_end(face) - begin;
+    // As triangles are made, without repetitions of a vertex.
+    std::vector<uint32_t> corners;
+    const auto vertex_of = [&](uint32_t corner) { return mesh.corner_vertices[corner]; };
+    for (uint32_t c = mesh.face_begin(face); c < mesh.face_end(face); ++c)
+        if (corners.empty() || vertex_of(corners.back()) != vertex_of(c)) corners.push_back(c);
+    if (corners.size() > 1 && vertex_of(corners.front()) == vertex_of(corners.back())) corners.pop_back();
+    const auto count = static_cast<uint32_t>(corners.size());
     std::vector<FilmPoint> film(count);
-    for (uint32_t k = 0; k < count; ++k)
-        film[k] = on_film(transform, surface.positions[mesh.corner_vertices[begin + k]]);
+    for (uint32_t k = 0; k < count; ++k) film[k] = on_film(transform, surface.positions[vertex_of(corners[k])]);
     const auto add = [&](uint32_t corner, uint32_t other, double share, const FilmPoint& q) {
         const double depth = projection.perspective() ? q[2] : 1;
-        const auto grid = [&](double at, double size) {
-            const double held = std::clamp(at / depth, -double{kGuardBand}, size + double{kGuardBand});
-            return std::round(held * kSubpixels) / kSubpixels;
+        // On the grid as far as it reaches; beyond, sides must keep their slopes.
+        const auto grid = [&](double at) {
+            const double pixels = at / depth;
+            return std::abs(pixels) < double{kGuardBand} ? std::round(pixels * kSubpixels) / kSubpixels : pixels;
         };
-        points_.push_back({begin + corner, begin + other, static_cast<float>(share), grid(q[0], projection.width()),
-                           grid(q[1], projection.height())});
+        points_.push_back({corners[corner], corners[other], static_cast<float>(share), grid(q[0]), grid(q[1])});
     };
     for (uint32_t k = 0; k < count; ++k) {
         const uint32_t next = k + 1 < count ? k + 1 : 0;
@@ -90,12 +95,26 @@ ScanPolygon::ScanPolygon(const PlacedSurface& surface, uint32_t face, const Film
         for (int r = 0; r < 3; ++r) cut[r] = a[r] + (b[r] - a[r]) * t;
         add(k, next, t, cut);
     }
+    // Seen in a pixel, and yet by rounding behind the near plane.
+    if (points_.empty()) points_.push_back({corners[0], corners[0], 0, 0, 0});
 }
 
 ScanLine ScanPolygon::at(double x, double y) const {
-    // Rounding may have put the point just above or below the polygon.
-    double low = 1e30, high = -1e30;
-    for (const PolygonPoint& p : points_) low = std::min(low, p.y), high = std::max(high, p.y);
+    ScanLine line;
+    // Rounding may have put the point just above or below the polygon; one that is thinner than the grid's step has no
+    // scan line, and the value of the nearest point.
+    double low = 1e30, high = -1e30, least = 1e30;
+    const PolygonPoint* nearest = nullptr;
+    for (const PolygonPoint& p : points_) {
+        low = std::min(low, p.y), high = std::max(high, p.y);
+        const double distance = std::hypot(p.x - x, p.y - y);
+        if (nearest && distance >= least) continue;
+        nearest = &p;
+        least = distance;
+    }
+    std::fill_n(line.ends, 4, *nearest);
+    line.alpha = line.beta = 1;
+    if (high - low < 1.0 / kSubpixels) return line;
     y = std::clamp(y, low, high - 0.5 / kSubpixels);
 
     struct Crossing {
@@ -111,13 +130,12 @@ ScanLine ScanPolygon::at(double x, double y) const {
         const double share = (y - lower->y) / (upper->y - lower->y);
         crossings.push_back({lower->x + (upper->x - lower->x) * share, static_cast<float>(share), upper, lower});
     }
-    ScanLine line;
     if (crossings.size() < 2) return line;
     std::stable_sort(crossings.begin(), crossings.end(),
                      [](const Crossing& a, const Crossing& b) { return a.x < b.x; });
     // Concave polygons are crossed more than twice: the span that holds the point, or comes nearest to it.
     size_t best = 0;
-    double least = 1e30;
+    least = 1e30;
     for (size_t k = 0; k + 1 < crossings.size(); k += 2) {
         const double away = std::max({crossings[k].x - x, x - crossings[k + 1].x, 0.0});
         if (away < least) least = away, best = k;

@@ -239,8 +239,30 @@ TEST(ScanLine, PolygonsThroughTheEyePlaneAreCut) {
         }
         const TrpScanLine line = pick(render, 30, 10);
         EXPECT_TRUE(line.seen);
-        EXPECT_EQ(std::count(line.vertices, line.vertices + 4, TRP_NO_ID), 2) << "its sides begin at the near plane";
+        EXPECT_EQ(std::count(line.vertices, line.vertices + 4, TRP_NO_VERTEX), 2)
+            << "its sides begin at the near plane";
     }
+}
+
+TEST(ScanLine, RepeatedCornersChangeNothing) {
+    Scene scene;
+    MeshData m = floor_square(4);
+    m.uvs.clear();
+    m.corners = {0, 1, 1, 2, 3, 0};
+    m.offsets = {0, 6};
+    m.materials = {scene.material([](TrpMaterialDesc& d) { d.emission = {{1, 1, 1}, TRP_NO_NODE}; })};
+    scene.instance(scene.mesh(m));
+    scene.camera_above(16);
+    scene.commit();
+    Settings settings = kScanLines;
+    settings.emplace_back("samples", "1");
+    const Image image = Render(scene, kSide, kSide, settings, {}, "gouraud").run().read();
+    for (uint32_t y = 18; y < 46; ++y)
+        for (uint32_t x = 18; x < 46; ++x) ASSERT_GE(image.at(x, y)[0], 1) << x << ", " << y;
+    Render render(scene, kSide, kSide, {}, {}, "gouraud");
+    const TrpScanLine line = pick(render, 20, 20);
+    EXPECT_EQ(line.vertices[0], 3u);
+    EXPECT_EQ(line.vertices[1], 0u) << "vertex 0 is a vertex";
 }
 
 TEST(ScanLine, PickingIsGuarded) {

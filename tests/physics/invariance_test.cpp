@@ -120,8 +120,8 @@ TEST(Invariance, ThreadsAndTilesGiveTheSameBits) {
         Image first;
         for (const char* threads : {"1", "2", "5"})
             for (const char* tile : {"16", "64", "1000"}) {
-                const Settings settings = {{"samples", "5"},           {"raster.samples", "4"},    {"shadows", "on"},
-                                           {"lines.hidden", "dashed"}, {"lines.depth_cue", "0.5"}, {"threads", threads},
+                const Settings settings = {{"samples", "5"},         {"raster.samples", "4"},    {"shadows", "on"},
+                                           {"lines.hidden", "none"}, {"lines.depth_cue", "0.5"}, {"threads", threads},
                                            {"film.tile_size", tile}};
                 const Image image = Render(scene, scale * kWidth, scale * kHeight, settings, {}, method).run().read();
                 if (first.values.empty()) first = image;
@@ -135,7 +135,7 @@ TEST(Invariance, AWindowIsAPieceOfThePicture) {
     build(scene, {});
     scene.commit();
     const Settings settings = {
-        {"samples", "3"}, {"raster.samples", "2"}, {"raster.interpolation", "scan_line"}, {"lines.hidden", "faint"}};
+        {"samples", "3"}, {"raster.samples", "2"}, {"raster.interpolation", "scan_line"}, {"lines.hidden", "dashed"}};
     for (const char* method : kMethods) {
         const Image whole = Render(scene, kWidth, kHeight, settings, {}, method).run().read();
         for (const auto& [x, y, w, h] :

@@ -181,6 +181,20 @@ TEST(Wireframe, ClassesAreDrawnAlone) {
     EXPECT_FALSE(drawn({}, -2, 2.5f)) << "a mesh that gives its edges has no others";
 }
 
+TEST(Wireframe, FacesWithoutAreaHaveNoEdges) {
+    // Between the two squares of one plane, a triangle whose corners lie on their common side.
+    Scene scene;
+    MeshData m = split_squares(0);
+    m.positions.insert(m.positions.end(), {0, 0, 0});
+    m.corners = {0, 1, 2, 3, 4, 5, 6, 7, 1, 8, 2};
+    m.offsets = {0, 4, 8, 11};
+    scene.object(m);
+    see_from_above(scene);
+    const Image image = draw(scene, kWidth, kHeight, "wireframe", {{"lines.all", "off"}});
+    EXPECT_EQ(ink_at(image, 0, 0.5f), 0);
+    EXPECT_GT(ink_at(image, 2, 0.5f), 0.3f);
+}
+
 TEST(Wireframe, SilhouettesAreTheOutlineOfAClosedMesh) {
     // Also with a mirrored transform, and with faces that are wound against each other.
     for (const bool flipped : {false, true})
@@ -499,6 +513,58 @@ TEST(HiddenLine, TouchingFacesKeepTheirEdges) {
         EXPECT_GT(ink_of({x, -1, 0}), 0.4f) << x;
         EXPECT_GT(ink_of({x, 1, 1.5f}), 0.4f) << x;
         EXPECT_LT(ink_of({x, 1, 0}), 0.02f) << x;
+    }
+}
+
+TEST(HiddenLine, TouchingFacesKeepTheirEdgesFarAway) {
+    // Boxes on one floor, seen at grazing angles, where a step of the film's grid is a long way on the floor.
+    for (const float distance : {10.0f, 20.0f, 40.0f, 80.0f}) {
+        Scene scene;
+        scene.object(floor_square(200));
+        scene.object(box({-1, distance, 0}, {1, distance + 2, 1.5f}), 0,
+                     {0.97f, 0.2f, 0, 0, -0.2f, 0.97f, 0, 0, 0, 0, 1, 0});
+        scene.camera(look_at({0.3f, 0, 1.7f}, {0.2f * distance, distance, 1}),
+                     [](TrpCameraDesc& d) { d.field_of_view = 0.6f; });
+        scene.commit();
+        const Vec eye = {0.3f, 0, 1.7f}, z = unit(eye - Vec{0.2f * distance, distance, 1}),
+                  x = unit(cross({0, 0, 1}, z)), y = cross(z, x);
+        const Image image = draw(scene, 960, 540, "hidden_line");
+        for (float s = -0.9f; s < 0.95f; s += 0.02f) {
+            const Vec p = {0.97f * s + 0.2f * distance, -0.2f * s + 0.97f * distance, 0}, to = p - eye;
+            const float scale = 480 / std::tan(0.3f) / -dot(to, z);
+            float most = 0;
+            for (int dy = -1; dy <= 1; ++dy)
+                most = std::max(most, ink(image, static_cast<int>(std::floor(dot(to, x) * scale + 480)),
+                                          static_cast<int>(std::floor(dot(to, y) * scale + 270)) + dy));
+            EXPECT_GT(most, 0.3f) << "at " << s << " of the front edge, " << distance << " m away";
+        }
+    }
+}
+
+TEST(HiddenLine, EdgesThroughTheEyePlaneStraightOnTheFilm) {
+    // The middle edge of a floor goes under the camera and stands upright on the film.
+    Scene scene;
+    MeshData floor;
+    for (int k = 0; k < 9; ++k)
+        floor.positions.insert(floor.positions.end(),
+                               {static_cast<float>(k % 3 - 1) * 10, static_cast<float>(k / 3 - 1) * 10, 0});
+    floor.corners = {0, 1, 4, 3, 1, 2, 5, 4, 3, 4, 7, 6, 4, 5, 8, 7};
+    floor.offsets = {0, 4, 8, 12, 16};
+    scene.object(floor);
+    scene.camera(look_at({0, 1, 1.7f}, {0, 6, 1}), [](TrpCameraDesc& d) { d.field_of_view = 0.9f; });
+    scene.commit();
+    const Image image = draw(scene, 1920, 1080, "hidden_line");
+    for (int y = 20; y < 400; y += 10) EXPECT_GT(ink(image, 960, y) + ink(image, 959, y), 0.5f) << y;
+}
+
+TEST(HiddenLine, NothingLeaksAtTheFilmsBorder) {
+    // A line half a pixel outside of the film, behind a face that reaches past it.
+    for (const char* width : {"1.5", "20"}) {
+        Scene scene;
+        scene.object(floor_square(8, 1));
+        loose_edge(scene, {-6, 4.05f, 0}, {6, 4.05f, 0});
+        see_from_above(scene);
+        EXPECT_NEAR(total_ink(draw(scene, kWidth, kHeight, "hidden_line", {{"lines.width", width}})), 0, 1e-3);
     }
 }
 

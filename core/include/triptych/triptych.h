@@ -501,6 +501,7 @@ TRP_API TrpStatus trp_render_read(const TrpRender* render, const char* pass, uin
  * ViewLayer.Pass.C as Blender and Nuke do, data window = the render's window; or .png, Combined, 8-bit sRGB. */
 TRP_API TrpStatus trp_render_write(const TrpRender* render, const char* path);
 
+#define TRP_NO_VERTEX 0xFFFFFFFFu
 /* How scan-line interpolation (raster.interpolation = scan_line) makes the value of a pixel's centre: down the sides of
  * the polygon that is seen there, A = alpha I1 + (1 - alpha) I2 and B = beta I3 + (1 - beta) I4, and across the scan
  * line, I = (1 - gamma) A + gamma B. The values are radiance in W/(m^2 sr) where the render's method is gouraud, and
@@ -512,7 +513,7 @@ typedef struct TrpScanLine {
     uint32_t face;        /* of its mesh */
     const char* mesh;     /* its name, or ""; the render's, until it is destroyed */
     uint32_t vertices[4]; /* of I1 to I4: the upper and the lower end of the side on the left, and of that on the right;
-                             TRP_NO_ID where the near plane cuts the side */
+                             TRP_NO_VERTEX where the near plane cuts the side */
     float values[4][3];   /* I1 to I4 */
     float alpha, beta, gamma;
     float a[3], b[3], value[3]; /* A, B and I */
