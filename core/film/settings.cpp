@@ -50,8 +50,7 @@ const SettingRow kSettings[] = {
      [](Settings& s, const double* v) { s.illumination.ambient = color_of(v); }},
     {TRP_TYPE_ENUM, "shading.normals", "Normals",
      "The mesh's own normals, or averages of the faces around each position, whether the mesh has normals or not; "
-     "faces "
-     "that are flat, and sharp edges, stay so",
+     "faces that are flat, and sharp edges, stay so",
      "", "mesh", 0, 0, kNormals, kSurfaceMethods, "",
      [](Settings& s, const double* v) { s.averaged_normals = *v != 0; }},
     {TRP_TYPE_ENUM, "shading.averaging", "Averaging",

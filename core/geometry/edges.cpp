@@ -1,7 +1,7 @@
 #include "geometry/edges.h"
 
 #include "base/parallel.h"
-#include "geometry/triangulate.h"
+#include "geometry/normals.h"
 #include "geometry/weld.h"
 #include "triptych/triptych.h"
 
@@ -57,14 +57,8 @@ EdgeSet make_edges(const Mesh& mesh) {
     EdgeSet set;
     set.face_normals.resize(mesh.face_count());
     parallel_ranges(set.face_normals.size(), 4096, [&](size_t begin, size_t end) {
-        std::vector<Vec3> polygon;
-        for (size_t face = begin; face < end; ++face) {
-            polygon.clear();
-            for (uint32_t c = mesh.face_begin(static_cast<uint32_t>(face));
-                 c < mesh.face_end(static_cast<uint32_t>(face)); ++c)
-                polygon.push_back(mesh.positions[mesh.corner_vertices[c]]);
-            set.face_normals[face] = polygon.size() < 3 ? Vec3(0, 0, 0) : Vec3(newell(polygon).normalized());
-        }
+        for (size_t face = begin; face < end; ++face)
+            set.face_normals[face] = face_normal(mesh, static_cast<uint32_t>(face));
     });
 
     const std::vector<uint32_t> welded = weld_vertices(mesh);

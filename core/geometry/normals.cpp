@@ -11,7 +11,6 @@
 #include "triptych/triptych.h"
 
 namespace trp {
-namespace {
 
 Vec3 face_normal(const Mesh& mesh, uint32_t face) {
     std::vector<Vec3> polygon;
@@ -19,6 +18,8 @@ Vec3 face_normal(const Mesh& mesh, uint32_t face) {
         polygon.push_back(mesh.positions[mesh.corner_vertices[c]]);
     return polygon.size() < 3 ? Vec3(0, 0, 0) : Vec3(newell(polygon).normalized());
 }
+
+namespace {
 
 Vec3 unit_or_up(const Vec3d& v) {
     const double length = v.length();

@@ -13,6 +13,9 @@ struct NormalLayer {
     const Vec3* values = nullptr;
 };
 
+// The unit normal of a face (Newell's), object space; 0 where it has no area.
+Vec3 face_normal(const Mesh& mesh, uint32_t face);
+
 // The mesh's own normals, made unit length; empty where they are so already. A zero normal becomes its face's.
 std::vector<Vec3> unit_normals(const Mesh& mesh);
 

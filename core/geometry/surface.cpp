@@ -49,17 +49,9 @@ void Surface::make_triangles() {
     std::vector<uint32_t> corners, local;
     std::vector<Vec3> polygon;
     for (uint32_t face = 0; face < mesh.face_count(); ++face) {
-        corners.clear();
+        mesh.distinct_corners(face, corners);
         polygon.clear();
-        for (uint32_t c = mesh.face_begin(face); c < mesh.face_end(face); ++c) {
-            if (!corners.empty() && mesh.corner_vertices[corners.back()] == mesh.corner_vertices[c]) continue;
-            corners.push_back(c);
-            polygon.push_back(mesh.positions[mesh.corner_vertices[c]]);
-        }
-        if (corners.size() > 1 && mesh.corner_vertices[corners.front()] == mesh.corner_vertices[corners.back()]) {
-            corners.pop_back();
-            polygon.pop_back();
-        }
+        for (const uint32_t c : corners) polygon.push_back(mesh.positions[mesh.corner_vertices[c]]);
         const Vec3d normal = polygon.size() < 3 ? Vec3d(0, 0, 0) : newell(polygon);
         if (normal == Vec3d(0, 0, 0)) {
             ++dropped_faces_;

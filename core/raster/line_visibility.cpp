@@ -32,9 +32,9 @@ const LineVisibility::Needed& LineVisibility::cluster_of(uint32_t key) {
     const DrawnCluster& drawn = triangles_.clusters[number];
     const PlacedCluster placed = triangles_.placed(drawn, projection_);
     const Cluster& cluster = placed.cluster();
-    const auto origin = [](uint32_t pixel) { return static_cast<int32_t>(pixel) * kSubpixels + kSubpixels / 2; };
     ClusterVertices vertices;
-    project_vertices(placed, origin(tile_.x0), origin(tile_.y0), vertices);
+    project_vertices(placed, grid_centre(static_cast<int32_t>(tile_.x0)), grid_centre(static_cast<int32_t>(tile_.y0)),
+                     vertices);
     needed->slot = drawn.slot;
     needed->primitives = &placed.set.primitives[cluster.first];
     for (uint32_t v = 0; v < cluster.vertex_count; ++v)
@@ -112,15 +112,14 @@ bool LineVisibility::sees(const Place& p) {
     // The four pixels, the nearest first.
     const int near_x = px - left > 0.5, near_y = py - low > 0.5;
     uint32_t keys[4];
-    int count = 0;
     for (int k = 0; k < 4; ++k) {
         const auto x = static_cast<int32_t>(left) + (near_x ^ (k & 1)) + static_cast<int32_t>(tile_.x0),
                    y = static_cast<int32_t>(low) + (near_y ^ (k >> 1)) + static_cast<int32_t>(tile_.y0);
-        keys[count++] = visibility_->key_at(std::clamp(x, 0, static_cast<int32_t>(projection_.width()) - 1),
-                                            std::clamp(y, 0, static_cast<int32_t>(projection_.height()) - 1));
+        keys[k] = visibility_->key_at(std::clamp(x, 0, static_cast<int32_t>(projection_.width()) - 1),
+                                      std::clamp(y, 0, static_cast<int32_t>(projection_.height()) - 1));
     }
     bool covered = false, nearest_is_before = false;
-    for (int k = 0; k < count; ++k) {
+    for (int k = 0; k < 4; ++k) {
         if (keys[k] == kNothing || std::find(keys, keys + k, keys[k]) != keys + k) continue;
         const Cover by = cover(p, keys[k]);
         const bool before = by.is_before(limit);
@@ -130,7 +129,7 @@ bool LineVisibility::sees(const Place& p) {
         covered = true;
     }
     if (covered || !nearest_is_before) return true;
-    return std::any_of(keys, keys + count, [&](uint32_t key) { return key != kNothing && is_own(p, key); });
+    return std::any_of(keys, keys + 4, [&](uint32_t key) { return key != kNothing && is_own(p, key); });
 }
 
 void LineVisibility::split(const Segment& s, uint32_t slot, const Edge& edge, std::vector<Run>& runs) {

@@ -3,7 +3,8 @@
 // A point of an edge is hidden where a triangle that is seen in one of the four pixels around it covers the point and
 // lies before it, unless it is of a face that the edge belongs to, known by its number. Where no seen triangle covers
 // the point, as where faces are smaller than pixels, it is seen with its faces, or where nothing is seen, or before the
-// triangle of the nearest pixel. The ends of seen parts are found by halving.
+// triangle of the nearest pixel. Before means by more than a step of the grid and a millionth, so that surfaces which
+// touch keep their edges. The ends of seen parts are found by halving.
 #pragma once
 
 #include <vector>

@@ -14,6 +14,10 @@
 namespace trp {
 
 inline constexpr int32_t kSubpixels = 256;
+// Where the centre of the pixels of a column or row lies on the grid.
+inline int32_t grid_centre(int32_t pixel) {
+    return pixel * kSubpixels + kSubpixels / 2;
+}
 // Film positions this far outside the film, in pixels, are still exact; what reaches farther is cut off.
 inline constexpr float kGuardBand = 16384;
 

@@ -57,6 +57,13 @@ bool is_seen_through(const Workspace& w) {
     return false;
 }
 
+// The lower left pixel of a block, by its place in a tile that lies within the film.
+std::array<uint32_t, 2> corner_of(uint32_t place, const VisibilityTile& tile) {
+    const uint32_t across = tile.blocks_across();
+    return {static_cast<uint32_t>(tile.x0()) + place % across * kBlockSide,
+            static_cast<uint32_t>(tile.y0()) + place / across * kBlockSide};
+}
+
 // A render's constants.
 struct Rasterizer {
     Rasterizer(const RenderJob& of, Evaluation where, const char* method);
@@ -215,9 +222,7 @@ bool Rasterizer::merge(uint32_t place, Workspace& w) const {
     const auto samples = static_cast<uint32_t>(pattern.size());
     const uint32_t* const keys = &w.keys[size_t{place} * kBatch];
     const size_t stride = w.visibility.pixels();
-    const uint32_t across = w.visibility.blocks_across(),
-                   x = static_cast<uint32_t>(w.visibility.x0()) + place % across * kBlockSide,
-                   y = static_cast<uint32_t>(w.visibility.y0()) + place / across * kBlockSide;
+    const auto [x, y] = corner_of(place, w.visibility);
     BlockSamples at(x, y, pattern[0].x, pattern[0].y);
     const BlockSums sums = job.film->block(x / kBlockSide, y / kBlockSide);
     uint32_t left[kBatch];  // samples that are not yet shown, by their bits
@@ -287,9 +292,7 @@ void Rasterizer::once(const TileWork& work, Workspace& w) const {
 
 // One layer of a sample at a block. Returns whether something may be seen behind it.
 bool Rasterizer::block(uint32_t place, const SampleOffset& offset, uint32_t sample, int layer, Workspace& w) const {
-    const uint32_t across = w.visibility.blocks_across(),
-                   x = static_cast<uint32_t>(w.visibility.x0()) + place % across * kBlockSide,
-                   y = static_cast<uint32_t>(w.visibility.y0()) + place / across * kBlockSide;
+    const auto [x, y] = corner_of(place, w.visibility);
     const uint32_t* keys = w.visibility.keys(place);
     const bool layered = snapshot.seen_through;
     LaneVec3* const throughput = layered ? &w.throughput[place] : nullptr;
@@ -426,8 +429,7 @@ PickedScanLine Rasterizer::scan(uint32_t slot, uint32_t face, bool behind, doubl
     PickedScanLine out{&surface, face, ScanPolygon(surface, face, list.transforms[slot], projection).at(x, y), {}};
     out.values = interpolate(out.line, [&](uint32_t corner) {
         if (evaluation == Evaluation::vertex) return colors[slot].at(surface, corner, behind);
-        Vec3 normal =
-            surface.world_from_object.normal(surface.surface->edges().face_normals[face]) * surface.normal_sign;
+        Vec3 normal = surface.world_from_object.normal(face_normal(*surface.mesh, face)) * surface.normal_sign;
         corner_normal(surface, job.settings.normals(), face, corner, normal);
         return normal.normalized() * (behind ? -1.0f : 1.0f);
     });

@@ -66,15 +66,12 @@ bool corner_normal(const PlacedSurface& surface, NormalChoice choice, uint32_t f
 ScanPolygon::ScanPolygon(const PlacedSurface& surface, uint32_t face, const FilmTransform& transform,
                          const Projection& projection) {
     const Mesh& mesh = *surface.mesh;
-    // As triangles are made, without repetitions of a vertex.
     std::vector<uint32_t> corners;
-    const auto vertex_of = [&](uint32_t corner) { return mesh.corner_vertices[corner]; };
-    for (uint32_t c = mesh.face_begin(face); c < mesh.face_end(face); ++c)
-        if (corners.empty() || vertex_of(corners.back()) != vertex_of(c)) corners.push_back(c);
-    if (corners.size() > 1 && vertex_of(corners.front()) == vertex_of(corners.back())) corners.pop_back();
+    mesh.distinct_corners(face, corners);
     const auto count = static_cast<uint32_t>(corners.size());
     std::vector<FilmPoint> film(count);
-    for (uint32_t k = 0; k < count; ++k) film[k] = on_film(transform, surface.positions[vertex_of(corners[k])]);
+    for (uint32_t k = 0; k < count; ++k)
+        film[k] = on_film(transform, surface.positions[mesh.corner_vertices[corners[k]]]);
     const auto add = [&](uint32_t corner, uint32_t other, double share, const FilmPoint& q) {
         const double depth = projection.perspective() ? q[2] : 1;
         // On the grid as far as it reaches; beyond, sides must keep their slopes.

@@ -52,9 +52,9 @@ uint32_t find_segment_lanes(const PlacedCluster& c, const TileReach& tile, Segme
     using VI = hn::Vec<decltype(di)>;
     const int lanes = static_cast<int>(hn::Lanes(d));
     const Cluster& cluster = c.cluster();
-    const auto origin = [](uint32_t pixel) { return static_cast<int32_t>(pixel) * kSubpixels + kSubpixels / 2; };
     ClusterVertices vertices;
-    project_vertices(c, origin(tile.x0), origin(tile.y0), vertices);
+    project_vertices(c, grid_centre(static_cast<int32_t>(tile.x0)), grid_centre(static_cast<int32_t>(tile.y0)),
+                     vertices);
 
     const auto reach = static_cast<int32_t>(std::ceil(tile.reach * kSubpixels));
     const auto last = [&](uint32_t pixels) { return static_cast<int32_t>(pixels - 1) * kSubpixels + reach; };

@@ -35,7 +35,6 @@ void VisibilityTile::begin(const Projection& projection, int32_t offset_x, int32
     std::fill_n(nearness_.get(), pixels(), projection.farthest());
     std::fill(farthest_.begin(), farthest_.end(), projection.farthest());
     std::fill(touched_.begin(), touched_.end(), uint8_t{0});
-    const auto corner = [](int32_t pixel, int32_t offset) { return pixel * kSubpixels + kSubpixels / 2 + offset; };
     buffers_ = {keys_.get(),
                 nearness_.get(),
                 behind ? last_keys_.get() : nullptr,
@@ -43,8 +42,8 @@ void VisibilityTile::begin(const Projection& projection, int32_t offset_x, int32
                 blocks_across_,
                 blocks_across_ * kBlockSide,
                 blocks_up_ * kBlockSide,
-                corner(x0_, offset_x),
-                corner(y0_, offset_y)};
+                grid_centre(x0_) + offset_x,
+                grid_centre(y0_) + offset_y};
 }
 
 // The blocks that the cluster may cover: [0] to [1] across, [2] to [3] up.

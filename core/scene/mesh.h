@@ -48,6 +48,13 @@ struct Mesh {
     }
     uint32_t face_begin(uint32_t face) const { return triangles_only() ? 3 * face : face_offsets[face]; }
     uint32_t face_end(uint32_t face) const { return triangles_only() ? 3 * face + 3 : face_offsets[face + 1]; }
+    // Into `out`, the corners of a face without those that repeat the vertex of the one before.
+    void distinct_corners(uint32_t face, std::vector<uint32_t>& out) const {
+        out.clear();
+        for (uint32_t c = face_begin(face); c < face_end(face); ++c)
+            if (out.empty() || corner_vertices[out.back()] != corner_vertices[c]) out.push_back(c);
+        if (out.size() > 1 && corner_vertices[out.front()] == corner_vertices[out.back()]) out.pop_back();
+    }
     uint64_t bytes() const;  // of all arrays
 };
 
