@@ -51,7 +51,7 @@ Film::Film(const Window& window, const PassList& passes) : window_(window), pass
     // Cleared block by block, by the threads that fill them.
     begun_.assign(blocks, 0);
     const size_t bytes = blocks * block * sizeof(float);
-    values_.reset(static_cast<float*>(std::malloc(bytes)));
+    values_.reset(static_cast<float*>(std::aligned_alloc(64, bytes)));
     if (!values_)
         fail(TRP_ERROR_MEMORY, "no memory for a film of {} x {} pixels with {} channels", window.w, window.h,
              passes.channels());

@@ -1,8 +1,80 @@
 #include "film/surface_passes.h"
 
-namespace trp {
-namespace {
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "film/surface_passes.cpp"
+#include "hwy/foreach_target.h"
 
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace trp::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+template <class D, class V>
+void add_to(D d, float* sum, V value) {
+    hn::Store(hn::Add(hn::Load(d, sum), value), d, sum);
+}
+
+// `weights`: of each lane, the part of the pixel that ends at its surface.
+void add_radiance_lanes(const SeenSurfaces& seen, const BlockSums& sums, float* weights) {
+    const hn::ScalableTag<float> d;
+    const hn::RebindToUnsigned<decltype(d)> du;
+    using V = hn::Vec<decltype(d)>;
+    const std::array<float*, 4> rgba = sums.combined();
+    const V one = hn::Set(d, 1.0f), third = hn::Set(d, 1.0f / 3);
+    for (int i = 0; i < kBatch; i += static_cast<int>(hn::Lanes(d))) {
+        const auto sees = hn::Ne(hn::Load(du, seen.points.slot + i), hn::Set(du, kNoSlot));
+        const V alpha = hn::IfThenElseZero(hn::RebindMask(d, sees), hn::Load(d, seen.coefficients.alpha + i));
+        V weight = alpha;
+        if (seen.throughput || seen.points.any_transmission) weight = hn::Zero(d);
+        for (int c = 0; c < 3; ++c) {
+            const V share = seen.throughput ? hn::Mul(alpha, hn::Load(d, (*seen.throughput)[c] + i)) : alpha;
+            const V radiance = hn::IfThenElseZero(hn::Gt(share, hn::Zero(d)), hn::Load(d, seen.radiance[c] + i));
+            hn::Store(hn::MulAdd(share, radiance, hn::Load(d, rgba[c] + i)), d, rgba[c] + i);
+            if (seen.points.any_transmission) {
+                const V ends = hn::Mul(share, hn::Sub(one, hn::Load(d, seen.coefficients.transmission[c] + i)));
+                weight = hn::MulAdd(ends, third, weight);
+            } else if (seen.throughput) {
+                weight = hn::MulAdd(share, third, weight);
+            }
+        }
+        weight = hn::IfThenElseZero(hn::RebindMask(d, sees), weight);
+        hn::Store(weight, d, weights + i);
+        add_to(d, rgba[3] + i, weight);
+    }
+}
+
+// `radiance`: null where nothing is shown but the lanes' alpha, and that unless `transparent`.
+void add_background_lanes(const uint8_t* missed, const LaneVec3* throughput, const LaneVec3* radiance, bool transparent,
+                          const BlockSums& sums) {
+    const hn::ScalableTag<float> d;
+    const hn::RebindToSigned<decltype(d)> di;
+    const hn::Rebind<uint8_t, decltype(di)> d8;
+    using V = hn::Vec<decltype(d)>;
+    const std::array<float*, 4> rgba = sums.combined();
+    for (int i = 0; i < kBatch; i += static_cast<int>(hn::Lanes(d))) {
+        const auto misses = hn::RebindMask(d, hn::Ne(hn::PromoteTo(di, hn::LoadU(d8, missed + i)), hn::Zero(di)));
+        const V one = hn::IfThenElseZero(misses, hn::Set(d, 1.0f));
+        V ends = throughput ? hn::Zero(d) : one;
+        for (int c = 0; c < 3; ++c) {
+            const V share = throughput ? hn::IfThenElseZero(misses, hn::Load(d, (*throughput)[c] + i)) : one;
+            if (throughput) ends = hn::MulAdd(share, hn::Set(d, 1.0f / 3), ends);
+            if (float* const shadow = sums.channel(kShadow, c)) add_to(d, shadow + i, share);
+            if (radiance) add_to(d, rgba[c] + i, hn::Mul(share, hn::Load(d, (*radiance)[c] + i)));
+        }
+        if (!transparent) add_to(d, rgba[3] + i, ends);
+    }
+}
+
+}  // namespace trp::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace trp {
+HWY_EXPORT(add_radiance_lanes);
+HWY_EXPORT(add_background_lanes);
+
+namespace {
 void add_first(const SeenSurfaces& seen, int i, const BlockSums& sums) {
     const Points& points = seen.points;
     const PlacedSurface& surface = seen.snapshot.surfaces[points.slot[i]];
@@ -21,26 +93,8 @@ void add_first(const SeenSurfaces& seen, int i, const BlockSums& sums) {
 
 void add_surfaces(const SeenSurfaces& seen, uint8_t* first, const BlockSums& sums) {
     const Points& points = seen.points;
-    const std::array<float*, 4> rgba = sums.combined();
-    // Without branches, for the compiler to make vectors of. Weights: the part of the pixel that ends here.
-    Lanes alpha, weights;
-    for (int i = 0; i < kBatch; ++i) alpha[i] = points.slot[i] == kNoSlot ? 0 : seen.coefficients.alpha[i];
-    if (seen.throughput || points.any_transmission) {
-        std::fill_n(weights, kBatch, 0.0f);
-        for (int i = 0; i < kBatch; ++i) {
-            if (alpha[i] == 0) continue;
-            const Vec3 share = (seen.throughput ? seen.throughput->get(i) : Vec3(1, 1, 1)) * alpha[i];
-            for (int c = 0; c < 3; ++c) rgba[c][i] += share[c] * seen.radiance[c][i];
-            const Vec3 ends =
-                points.any_transmission ? share * (Vec3(1, 1, 1) - seen.coefficients.transmission.get(i)) : share;
-            weights[i] = (ends.x + ends.y + ends.z) / 3;
-        }
-    } else {
-        std::copy_n(alpha, kBatch, weights);
-        for (int c = 0; c < 3; ++c)
-            for (int i = 0; i < kBatch; ++i) rgba[c][i] += weights[i] * seen.radiance[c][i];
-    }
-    for (int i = 0; i < kBatch; ++i) rgba[3][i] += weights[i];
+    alignas(64) Lanes weights;
+    HWY_DYNAMIC_DISPATCH(add_radiance_lanes)(seen, sums, weights);
     if (sums.passes().order().size() == 1) return;
 
     for (int i = 0; i < kBatch; ++i) {
@@ -69,23 +123,10 @@ Vec3 throughput_behind(const Points& points, const Coefficients& coefficients, i
 
 void add_background(const Snapshot& snapshot, const LaneVec3& directions, const uint8_t* missed,
                     const LaneVec3* throughput, bool transparent, const BlockSums& sums) {
-    const bool shows = snapshot.world.visible_camera && snapshot.world.radiance != Vec3(0, 0, 0);
+    const bool shows = !transparent && snapshot.world.visible_camera && snapshot.world.radiance != Vec3(0, 0, 0);
     static thread_local LaneVec3 radiance;
-    if (shows && !transparent) sample_background(snapshot, directions, missed, radiance);
-    const std::array<float*, 4> rgba = sums.combined();
-    for (int c = 0; c < 3; ++c) {
-        Lanes weights;
-        for (int i = 0; i < kBatch; ++i) weights[i] = !missed[i] ? 0 : throughput ? (*throughput)[c][i] : 1;
-        if (float* shadow = sums.channel(kShadow, c))
-            for (int i = 0; i < kBatch; ++i) shadow[i] += weights[i];
-        if (transparent) continue;
-        if (shows)
-            for (int i = 0; i < kBatch; ++i) rgba[c][i] += weights[i] * radiance[c][i];
-        if (throughput)
-            for (int i = 0; i < kBatch; ++i) rgba[3][i] += weights[i] / 3;
-    }
-    if (transparent || throughput) return;
-    for (int i = 0; i < kBatch; ++i) rgba[3][i] += missed[i] ? 1.0f : 0.0f;
+    if (shows) sample_background(snapshot, directions, missed, radiance);
+    HWY_DYNAMIC_DISPATCH(add_background_lanes)(missed, throughput, shows ? &radiance : nullptr, transparent, sums);
 }
 
 void finish_depth(const uint8_t* first, const BlockSums& sums) {
@@ -95,3 +136,4 @@ void finish_depth(const uint8_t* first, const BlockSums& sums) {
 }
 
 }  // namespace trp
+#endif

@@ -296,14 +296,12 @@ bool Rasterizer::block(uint32_t place, const SampleOffset& offset, uint32_t samp
     const uint32_t* keys = w.visibility.keys(place);
     const bool layered = snapshot.seen_through;
     LaneVec3* const throughput = layered ? &w.throughput[place] : nullptr;
-    bool any_missed = false, any_seen = false;
-    for (int i = 0; i < kBatch; ++i) {
-        w.missed[i] = keys[i] == kNothing;
-        any_seen |= keys[i] != kNothing;
-    }
-    for (int i = 0; i < kBatch; ++i) {
-        if (layered) w.missed[i] &= throughput->get(i) != Vec3(0, 0, 0);
-        any_missed |= w.missed[i] != 0;
+    const bool any_seen = read_keys(list, keys, w.points);
+    uint8_t any_missed = 0;
+    for (int i = 0; i < kBatch; ++i) any_missed |= w.missed[i] = keys[i] == kNothing;
+    if (layered) {
+        any_missed = 0;
+        for (int i = 0; i < kBatch; ++i) any_missed |= w.missed[i] &= throughput->get(i) != Vec3(0, 0, 0);
     }
     if (!any_missed && !any_seen) return false;
     const BlockSamples samples(x, y, offset.x, offset.y);
@@ -314,7 +312,6 @@ bool Rasterizer::block(uint32_t place, const SampleOffset& offset, uint32_t samp
     uint8_t own_first[kBatch] = {};
     uint8_t* first = layered ? &w.first[size_t{place} * kBatch] : own_first;
     if (any_seen) {
-        read_keys(list, keys, w.points);
         const auto count = static_cast<uint32_t>(pattern.size()), lights = (light_samples + count - 1) / count;
         shade(samples, std::max(0.125f, 1 / std::sqrt(static_cast<float>(count))),
               {sample * lights, lights,

@@ -1,5 +1,7 @@
 #include "raster/seen_points.h"
 
+#include <bit>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raster/seen_points.cpp"
 #include "hwy/foreach_target.h"
@@ -31,34 +33,50 @@ void make_direction_lanes(const View& view, const BlockSamples& samples, LaneVec
     }
 }
 
+bool read_key_lanes(const DrawList& list, const uint32_t* keys, Points& points) {
+    const hn::ScalableTag<uint32_t> d;
+    const hn::RebindToSigned<decltype(d)> di;
+    using V = hn::Vec<decltype(d)>;
+    constexpr int kShift = std::countr_zero(Cluster::kMostPrimitives);
+    bool any_seen = false;
+    for (int i = 0; i < kBatch; i += static_cast<int>(hn::Lanes(d))) {
+        const V key = hn::Load(d, keys + i), number = hn::ShiftRight<kShift>(key);
+        auto left = hn::Ne(key, hn::Set(d, kNothing));
+        any_seen |= !hn::AllFalse(d, left);
+        V slot = hn::Set(d, kNoSlot), triangle = hn::Zero(d);
+        alignas(64) uint32_t numbers[HWY_MAX_BYTES / sizeof(uint32_t)];
+        hn::Store(number, d, numbers);
+        while (!hn::AllFalse(d, left)) {
+            const uint32_t one = numbers[hn::FindFirstTrue(d, left)];
+            const auto here = hn::And(left, hn::Eq(number, hn::Set(d, one)));
+            const DrawnCluster& drawn = list.clusters[one];
+            const ClusterSet& set = *list.sets[drawn.slot];
+            const V place = hn::IfThenElseZero(here, hn::And(key, hn::Set(d, Cluster::kMostPrimitives - 1)));
+            const V of = hn::GatherIndex(d, &set.primitives[set.clusters[drawn.cluster].first], hn::BitCast(di, place));
+            triangle = hn::IfThenElse(here, of, triangle);
+            slot = hn::IfThenElse(here, hn::Set(d, drawn.slot), slot);
+            left = hn::AndNot(here, left);
+        }
+        hn::Store(slot, d, points.slot + i);
+        hn::Store(triangle, d, points.triangle + i);
+    }
+    return any_seen;
+}
+
 }  // namespace trp::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace trp {
 HWY_EXPORT(make_direction_lanes);
+HWY_EXPORT(read_key_lanes);
 
 void make_directions(const View& view, const BlockSamples& samples, LaneVec3& origins, LaneVec3& directions) {
     HWY_DYNAMIC_DISPATCH(make_direction_lanes)(view, samples, origins, directions);
 }
 
-void read_keys(const DrawList& list, const uint32_t* keys, Points& points) {
-    uint32_t number = kNothing, slot = 0;
-    const uint32_t* triangles = nullptr;
-    for (int i = 0; i < kBatch; ++i) {
-        points.slot[i] = kNoSlot;
-        points.triangle[i] = 0;
-        if (keys[i] == kNothing) continue;
-        if (!triangles || keys[i] / Cluster::kMostPrimitives != number) {
-            number = keys[i] / Cluster::kMostPrimitives;
-            const DrawnCluster& drawn = list.clusters[number];
-            const ClusterSet& set = *list.sets[drawn.slot];
-            slot = drawn.slot;
-            triangles = &set.primitives[set.clusters[drawn.cluster].first];
-        }
-        points.slot[i] = slot;
-        points.triangle[i] = triangles[keys[i] % Cluster::kMostPrimitives];
-    }
+bool read_keys(const DrawList& list, const uint32_t* keys, Points& points) {
+    return HWY_DYNAMIC_DISPATCH(read_key_lanes)(list, keys, points);
 }
 
 }  // namespace trp

@@ -24,7 +24,7 @@ struct BlockSamples {
 // unless all start at the eye of a perspective camera.
 void make_directions(const View& view, const BlockSamples& samples, LaneVec3& origins, LaneVec3& directions);
 
-// Slot and triangle of what the keys say is seen.
-void read_keys(const DrawList& list, const uint32_t* keys, Points& points);
+// Slot and triangle of what the keys say is seen. Returns whether any lane sees something.
+bool read_keys(const DrawList& list, const uint32_t* keys, Points& points);
 
 }  // namespace trp
