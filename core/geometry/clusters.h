@@ -29,8 +29,9 @@ struct ClusterSet {
     std::vector<Cluster> clusters;
     std::vector<uint32_t> primitives;  // triangles of the surface, or edges
     std::vector<uint32_t> vertices;    // of the mesh
-    // Of triangles, roughly: the directions of their normals, times 127.
-    std::vector<std::array<int8_t, 3>> normals;
+    // Of triangles, roughly: the directions of their normals, times 127, and 0.
+    struct alignas(4) Normal : std::array<int8_t, 4> {};
+    std::vector<Normal> normals;
     // Per primitive, which of the cluster's vertices its corners are. Padded, to be read in whole vectors.
     std::vector<uint8_t> corners[3];
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.h"
 #include "geometry/normals.h"
 #include "geometry/triangulate.h"
 #include "triptych/triptych.h"
@@ -90,13 +91,16 @@ const NormalLayer& Surface::normals(NormalChoice choice) const {
 const ClusterSet& Surface::clusters() const {
     std::call_once(clusters_once_, [this] {
         clusters_ = make_clusters(*mesh_, 3, triangle_vertices(), triangle_count_, bounds_);
-        for (const uint32_t triangle : clusters_.primitives) {
-            const uint32_t* const v = triangle_vertices() + 3 * size_t{triangle};
-            const Vec3d a(mesh_->positions[v[0]]), b(mesh_->positions[v[1]]), c(mesh_->positions[v[2]]);
-            const Vec3d normal = (b - a).cross(c - a).normalized() * 127;
-            const auto rounded = [](double x) { return static_cast<int8_t>(std::lround(x)); };
-            clusters_.normals.push_back({rounded(normal.x), rounded(normal.y), rounded(normal.z)});
-        }
+        clusters_.normals.resize(clusters_.primitives.size());
+        parallel_ranges(clusters_.normals.size(), 4096, [&](size_t begin, size_t end) {
+            for (size_t k = begin; k < end; ++k) {
+                const uint32_t* const v = triangle_vertices() + 3 * size_t{clusters_.primitives[k]};
+                const Vec3d a(mesh_->positions[v[0]]), b(mesh_->positions[v[1]]), c(mesh_->positions[v[2]]);
+                const Vec3d normal = (b - a).cross(c - a).normalized() * 127;
+                const auto rounded = [](double x) { return static_cast<int8_t>(std::lround(x)); };
+                clusters_.normals[k] = {rounded(normal.x), rounded(normal.y), rounded(normal.z), 0};
+            }
+        });
     });
     return clusters_;
 }

@@ -3,7 +3,6 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "base/clock.h"
@@ -11,6 +10,7 @@
 #include "film/pixel_random.h"
 #include "film/surface_passes.h"
 #include "raster/face_points.h"
+#include "raster/sample_groups.h"
 #include "raster/sample_pattern.h"
 #include "raster/scan_line.h"
 #include "shading/footprints.h"
@@ -40,6 +40,7 @@ struct Workspace : Shading {
     std::vector<uint32_t> keys;    // of all pixels, sample by sample
     std::vector<uint8_t> layered;  // of blocks: they show surfaces that are seen through
     LaneVec3 shares;
+    SampleGroup group;
 
     LaneVec3 origins, directions;
     Points points;
@@ -89,7 +90,6 @@ struct Rasterizer {
     // Surfaces once for all samples of a pixel that they cover.
     void once(const TileWork& work, Workspace& w) const;
     bool merge(uint32_t place, Workspace& w) const;
-    bool is_one_surface(uint32_t key, uint32_t other) const;
     // Layers of surfaces, sample by sample.
     void sample(const TileWork& work, uint32_t number, Workspace& w) const;
     bool block(uint32_t place, const SampleOffset& offset, uint32_t sample, int layer, Workspace& w) const;
@@ -196,72 +196,35 @@ bool Rasterizer::see(const TileWork& work, uint32_t number, int layer, Workspace
     return true;
 }
 
-// Whether two triangles of different keys are parts of one surface that look alike: one face, or smooth neighbours of
-// one material.
-bool Rasterizer::is_one_surface(uint32_t key, uint32_t other) const {
-    constexpr int kAlike = 15200;  // 127² times the cosine of 20°
-    if (key == kNothing || other == kNothing) return false;
-    const DrawnCluster &a = list.clusters[key / Cluster::kMostPrimitives],
-                       &b = list.clusters[other / Cluster::kMostPrimitives];
-    if (a.slot != b.slot) return false;
-    const PlacedSurface& surface = *list.surfaces[a.slot];
-    const ClusterSet& set = *list.sets[a.slot];
-    const uint32_t at_a = set.clusters[a.cluster].first + key % Cluster::kMostPrimitives,
-                   at_b = set.clusters[b.cluster].first + other % Cluster::kMostPrimitives;
-    const uint32_t face_a = surface.face(set.primitives[at_a]), face_b = surface.face(set.primitives[at_b]);
-    if (face_a == face_b) return true;
-    if (evaluation == Evaluation::polygon || surface.face_material(face_a) != surface.face_material(face_b))
-        return false;
-    const auto &n = set.normals[at_a], &m = set.normals[at_b];
-    return n[0] * m[0] + n[1] * m[1] + n[2] * m[2] > kAlike;
-}
-
 // A block whose samples' keys are known, each surface of a pixel shaded once, at its sample that is nearest to the
 // pixel's centre. Returns false, with nothing added, where a surface is seen through.
 bool Rasterizer::merge(uint32_t place, Workspace& w) const {
     const auto samples = static_cast<uint32_t>(pattern.size());
-    const uint32_t* const keys = &w.keys[size_t{place} * kBatch];
-    const size_t stride = w.visibility.pixels();
+    const BlockKeys keys{&w.keys[size_t{place} * kBatch], w.visibility.pixels(), samples};
+    const SampleGroups groups(list, evaluation == Evaluation::polygon);
     const auto [x, y] = corner_of(place, w.visibility);
     BlockSamples at(x, y, pattern[0].x, pattern[0].y);
     const BlockSums sums = job.film->block(x / kBlockSide, y / kBlockSide);
-    uint32_t left[kBatch];  // samples that are not yet shown, by their bits
+    alignas(64) uint32_t left[kBatch];  // samples that are not yet shown, by their bits
     std::fill_n(left, kBatch, samples == 32 ? ~0u : (1u << samples) - 1);
     uint8_t first[kBatch] = {};
     bool any_left = true;
     for (uint32_t round = 0; any_left; ++round) {
-        uint32_t shown[kBatch];
-        bool any_missed = false, any_seen = false;
-        int most = 0;  // samples of a pixel's surface
-        any_left = false;
-        for (uint32_t i = 0; i < kBatch; ++i) {
-            w.missed[i] = 0;
-            shown[i] = kNothing;
-            if (left[i] == 0) continue;
-            const auto nearest = static_cast<uint32_t>(std::countr_zero(left[i]));
-            const uint32_t key = keys[nearest * stride + i];
-            uint32_t alike = 0;
-            for (uint32_t rest = left[i]; rest; rest &= rest - 1) {
-                const auto s = static_cast<uint32_t>(std::countr_zero(rest));
-                const uint32_t other = keys[s * stride + i];
-                if (other == key || is_one_surface(key, other)) alike |= 1u << s;
-            }
-            left[i] &= ~alike;
-            most = std::max(most, std::popcount(alike));
-            const auto share = static_cast<float>(std::popcount(alike));
-            const auto lane = static_cast<int>(i);
-            w.shares.set(lane, {share, share, share});
-            if (round > 0) at.set(lane, pattern[nearest].x, pattern[nearest].y);
-            shown[i] = key;
-            w.missed[i] = key == kNothing;
-            any_missed |= key == kNothing;
-            any_seen |= key != kNothing;
-            any_left |= left[i] != 0;
+        SampleGroup& group = w.group;
+        any_left = groups.take(keys, left, group);
+        if (round > 0)
+            for (int i = 0; i < kBatch; ++i) at.set(i, pattern[group.first[i]].x, pattern[group.first[i]].y);
+        uint8_t any_missed = 0;
+        float most = 0;  // samples of a pixel's surface
+        for (int i = 0; i < kBatch; ++i) {
+            any_missed |= w.missed[i] = group.key[i] == kNothing && group.count[i] > 0;
+            most = std::max(most, group.count[i]);
         }
+        for (int c = 0; c < 3; ++c) std::copy_n(group.count, kBatch, w.shares[c]);
+        const bool any_seen = read_keys(list, group.key, w.points);
         if (any_seen || snapshot.world.texture != TRP_NO_ID) make_directions(view, at, w.origins, w.directions);
         if (any_missed) add_background(snapshot, w.directions, w.missed, &w.shares, job.settings.transparent, sums);
         if (any_seen) {
-            read_keys(list, shown, w.points);
             const uint32_t lights = (light_samples * static_cast<uint32_t>(most) + samples - 1) / samples;
             shade(at, 1, {0, lights, Coherence::incoherent}, w);
             if (is_seen_through(w)) {
