@@ -21,6 +21,7 @@ struct TrpRender {
     trp::Window window;
     trp::PassList passes;
     std::unique_ptr<trp::Film> film;  // of the last run
+    std::unique_ptr<trp::Film> spare_film;
     std::atomic<bool> cancelled{false}, running{false};
     std::mutex state;  // between a run's beginning or end and a cancel from another thread
     TrpStatistics statistics{};

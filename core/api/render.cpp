@@ -51,13 +51,23 @@ struct Running {
     TrpRender& render;
 };
 
-// The film of a run, in place of that of the run before, which comes back if this one fails.
+// The film of a run, in place of that of the run before, which comes back if this one fails. Else it is kept, unless it
+// is large, for the next run: the system's fresh memory costs more than drawing a simple frame.
 struct NewFilm {
     explicit NewFilm(TrpRender& render) : render(render) {
-        before = std::exchange(render.film, std::make_unique<Film>(render.window, render.passes));
+        std::unique_ptr<Film> film = std::move(render.spare_film);
+        if (film && film->is_for(render.window, render.passes))
+            film->clear();
+        else
+            film = std::make_unique<Film>(render.window, render.passes);
+        before = std::exchange(render.film, std::move(film));
     }
     ~NewFilm() {
-        if (!kept) render.film = std::move(before);
+        constexpr size_t kMostSpareBytes = size_t{256} << 20;
+        if (!kept)
+            render.film = std::move(before);
+        else if (before && before->bytes() <= kMostSpareBytes)
+            render.spare_film = std::move(before);
     }
     NewFilm(const NewFilm&) = delete;
     NewFilm& operator=(const NewFilm&) = delete;

@@ -47,10 +47,9 @@ Film::Film(const Window& window, const PassList& passes) : window_(window), pass
     const uint32_t blocks_up = (window.y + window.h - 1) / kBlockSide - first_block_y_ + 1;
     const size_t blocks = size_t{blocks_across_} * blocks_up;
     block_samples_.assign(blocks, 0);
-    const size_t block = kBatch * static_cast<size_t>(passes.channels());
     // Cleared block by block, by the threads that fill them.
     begun_.assign(blocks, 0);
-    const size_t bytes = blocks * block * sizeof(float);
+    const size_t bytes = this->bytes();
     values_.reset(static_cast<float*>(std::aligned_alloc(64, bytes)));
     if (!values_)
         fail(TRP_ERROR_MEMORY, "no memory for a film of {} x {} pixels with {} channels", window.w, window.h,
@@ -62,6 +61,15 @@ Film::Film(const Window& window, const PassList& passes) : window_(window), pass
     const size_t skipped = (kPage - reinterpret_cast<uintptr_t>(first) % kPage) % kPage;
     if (bytes > (size_t{4} << 20)) madvise(first + skipped, bytes - skipped, MADV_HUGEPAGE);
 #endif
+}
+
+size_t Film::bytes() const {
+    return begun_.size() * kBatch * static_cast<size_t>(passes_.channels()) * sizeof(float);
+}
+
+void Film::clear() {
+    std::fill(block_samples_.begin(), block_samples_.end(), 0);
+    std::fill(begun_.begin(), begun_.end(), uint8_t{0});
 }
 
 uint32_t Film::block_index(uint32_t block_x, uint32_t block_y) const {

@@ -30,6 +30,7 @@ inline std::array<uint32_t, 2> pixel_of_lane(int lane) {
 struct Window {
     uint32_t width = 960, height = 540;  // of the whole picture
     uint32_t x = 0, y = 0, w = 960, h = 540;
+    bool operator==(const Window&) const = default;
 };
 
 // The passes of a render that are asked for, and where their channels lie.
@@ -82,6 +83,12 @@ class Film {
 
     const Window& window() const { return window_; }
     const PassList& passes() const { return passes_; }
+    bool is_for(const Window& window, const PassList& passes) const {
+        return window == window_ && passes.order() == passes_.order();
+    }
+    size_t bytes() const;  // of its values
+    // As it was when it was made.
+    void clear();
     // The block at grid place (block_x, block_y), cleared when it is first asked for: methods add to it, one thread at
     // a time, and then say how many samples they have added.
     BlockSums block(uint32_t block_x, uint32_t block_y);

@@ -247,7 +247,7 @@ HWY_INLINE void draw_pixel(size_t at, float near, uint32_t key, const Visibility
 }
 
 // Triangles at most so many pixels wide and high are drawn side by side, a pixel of each at a time.
-constexpr int32_t kFewPixels = 3;
+constexpr int32_t kFewPixels = 4;
 
 // `edge`, `a`, `b`: of the edge functions, as in Setup; `first_key`: of the first lane.
 template <class VI, class V, class M>

@@ -92,7 +92,7 @@ struct Rasterizer {
     bool merge(uint32_t place, Workspace& w) const;
     // Layers of surfaces, sample by sample.
     void sample(const TileWork& work, uint32_t number, Workspace& w) const;
-    bool block(uint32_t place, const SampleOffset& offset, uint32_t sample, int layer, Workspace& w) const;
+    bool block(uint32_t place, BlockSamples& samples, uint32_t sample, int layer, Workspace& w) const;
     struct LightShare {
         uint32_t first, count;  // of the pixel's light samples
         Coherence coherence;
@@ -215,17 +215,17 @@ bool Rasterizer::merge(uint32_t place, Workspace& w) const {
         if (round > 0)
             for (int i = 0; i < kBatch; ++i) at.set(i, pattern[group.first[i]].x, pattern[group.first[i]].y);
         uint8_t any_missed = 0;
-        float most = 0;  // samples of a pixel's surface
-        for (int i = 0; i < kBatch; ++i) {
-            any_missed |= w.missed[i] = group.key[i] == kNothing && group.count[i] > 0;
-            most = std::max(most, group.count[i]);
-        }
+        for (int i = 0; i < kBatch; ++i) any_missed |= w.missed[i] = (group.key[i] == kNothing) & (group.count[i] > 0);
         for (int c = 0; c < 3; ++c) std::copy_n(group.count, kBatch, w.shares[c]);
         const bool any_seen = read_keys(list, group.key, w.points);
         if (any_seen || snapshot.world.texture != TRP_NO_ID) make_directions(view, at, w.origins, w.directions);
         if (any_missed) add_background(snapshot, w.directions, w.missed, &w.shares, job.settings.transparent, sums);
         if (any_seen) {
-            const uint32_t lights = (light_samples * static_cast<uint32_t>(most) + samples - 1) / samples;
+            uint32_t lights = 1;
+            if (light_samples > 1) {  // as many as the surface with the most samples needs
+                const auto most = static_cast<uint32_t>(*std::max_element(group.count, group.count + kBatch));
+                lights = (light_samples * most + samples - 1) / samples;
+            }
             shade(at, 1, {0, lights, Coherence::incoherent}, w);
             if (is_seen_through(w)) {
                 sums.clear();
@@ -253,9 +253,11 @@ void Rasterizer::once(const TileWork& work, Workspace& w) const {
     job.counts->shading_time += nanoseconds(start, Clock::now());
 }
 
-// One layer of a sample at a block. Returns whether something may be seen behind it.
-bool Rasterizer::block(uint32_t place, const SampleOffset& offset, uint32_t sample, int layer, Workspace& w) const {
+// One layer of a sample at a block; `samples` are moved there. Returns whether something may be seen behind it.
+bool Rasterizer::block(uint32_t place, BlockSamples& samples, uint32_t sample, int layer, Workspace& w) const {
     const auto [x, y] = corner_of(place, w.visibility);
+    samples.x = x;
+    samples.y = y;
     const uint32_t* keys = w.visibility.keys(place);
     const bool layered = snapshot.seen_through;
     LaneVec3* const throughput = layered ? &w.throughput[place] : nullptr;
@@ -267,7 +269,6 @@ bool Rasterizer::block(uint32_t place, const SampleOffset& offset, uint32_t samp
         for (int i = 0; i < kBatch; ++i) any_missed |= w.missed[i] &= throughput->get(i) != Vec3(0, 0, 0);
     }
     if (!any_missed && !any_seen) return false;
-    const BlockSamples samples(x, y, offset.x, offset.y);
     if (any_seen || snapshot.world.texture != TRP_NO_ID) make_directions(view, samples, w.origins, w.directions);
     const BlockSums sums = job.film->block(x / kBlockSide, y / kBlockSide);
     if (any_missed) add_background(snapshot, w.directions, w.missed, throughput, job.settings.transparent, sums);
@@ -307,6 +308,7 @@ void Rasterizer::sample(const TileWork& work, uint32_t number, Workspace& w) con
             for (int c = 0; c < 3; ++c) std::fill_n(lanes[c], kBatch, 1.0f);
         if (number == 0) w.first.assign(size_t{blocks} * kBatch, 0);
     }
+    BlockSamples samples(0, 0, pattern[number].x, pattern[number].y);
     bool any_left = true;
     for (int layer = 0; layer < kGreatestLayers && any_left; ++layer) {
         if (!see(work, number, layer, w)) return;
@@ -314,7 +316,7 @@ void Rasterizer::sample(const TileWork& work, uint32_t number, Workspace& w) con
         any_left = false;
         for (uint32_t place = 0; place < blocks; ++place) {
             if (*job.cancelled) return;
-            if (w.layered[place]) any_left |= block(place, pattern[number], number, layer, w);
+            if (w.layered[place]) any_left |= block(place, samples, number, layer, w);
         }
         job.counts->shading_time += nanoseconds(start, Clock::now());
     }

@@ -24,10 +24,9 @@ struct Corners {
     V greatest;  // a bound of all numbers that were added up for a coordinate
 };
 
-template <class D, class VI, class V = hn::Vec<D>>
-Corners<V> load_corners(D d, const PlacedSurface& surface, VI v0, VI v1, VI v2, bool single) {
-    Corners<V> c{read3_at(d, surface.positions, v0, single), read3_at(d, surface.positions, v1, single),
-                 read3_at(d, surface.positions, v2, single), hn::Zero(d)};
+// To world space.
+template <class D, class V>
+void place_corners(D d, const PlacedSurface& surface, Corners<V>& c) {
     Vector3<V>* const points[3] = {&c.p0, &c.p1, &c.p2};
     for (Vector3<V>* p : points) {
         if (surface.baked) {
@@ -45,7 +44,6 @@ Corners<V> load_corners(D d, const PlacedSurface& surface, VI v0, VI v1, VI v2, 
         }
         *p = {out[0], out[1], out[2]};
     }
-    return c;
 }
 
 // The cofactor matrix of the surface's transform times n: turns normals, up to length.
@@ -109,17 +107,40 @@ void locate_lanes(const Snapshot& snapshot, NormalChoice choice, Side seen_side,
         } else {
             b1 = hn::Load(d, points.b1 + i), b2 = hn::Load(d, points.b2 + i);
         }
-        Vector3<V> position{zero, zero, zero}, edge1 = position, edge2 = position, geometric{zero, zero, one},
-                                               normal = geometric;
+        const Vector3<V> none{zero, zero, zero};
+        Vector3<V> position = none, edge1 = none, edge2 = none, geometric{zero, zero, one}, normal = geometric;
         V greatest = zero;
         hn::Store(hn::Zero(di), di, reinterpret_cast<int32_t*>(points.material) + i);
 
         for_each_surface(di, snapshot, slots, hit, [&](const PlacedSurface& surface, auto here) {
             const auto mask = hn::RebindMask(d, here);
-            const SeenTriangles<VI> seen = triangles_of(di, triangles, here, points.triangle + i);
-            const VI v0 = triangle_vertex(di, surface, seen, 0), v1 = triangle_vertex(di, surface, seen, 1),
-                     v2 = triangle_vertex(di, surface, seen, 2);
-            const Corners<V> c = load_corners(d, surface, v0, v1, v2, seen.single);
+            const NormalLayer& layer = surface.surface->normals(choice);
+            Corners<V> c{none, none, none, zero};
+            Vector3<V> n0 = none, n1 = none, n2 = none;
+            auto smooth = hn::MaskFromVec(zero);
+            for_each_triangle(di, triangles, here, [&](uint32_t triangle, auto these) {
+                const auto lanes_of = hn::RebindMask(d, these);
+                const uint32_t* const v = surface.vertices + 3 * size_t{triangle};
+                c.p0 = select3(lanes_of, broadcast(d, surface.positions[v[0]]), c.p0);
+                c.p1 = select3(lanes_of, broadcast(d, surface.positions[v[1]]), c.p1);
+                c.p2 = select3(lanes_of, broadcast(d, surface.positions[v[2]]), c.p2);
+                const uint32_t material = surface.material(triangle);
+                hn::BlendedStore(hn::Set(di, static_cast<int32_t>(material)), these, di,
+                                 reinterpret_cast<int32_t*>(points.material) + i);
+                flags |= snapshot.material_flags[material];
+                if (layer.domain == NormalLayer::Domain::flat ||
+                    (surface.face_smooth && !surface.face_smooth[surface.face(triangle)]))
+                    return;
+                smooth = hn::Or(smooth, lanes_of);
+                const bool by_vertex = layer.domain == NormalLayer::Domain::vertex;
+                auto normal_of = [&](int k) {
+                    return broadcast(d, layer.values[by_vertex ? v[k] : surface.corner(triangle, k)]);
+                };
+                n0 = select3(lanes_of, normal_of(0), n0);
+                n1 = select3(lanes_of, normal_of(1), n1);
+                n2 = select3(lanes_of, normal_of(2), n2);
+            });
+            place_corners(d, surface, c);
             const Vector3<V> e1 = c.p1 - c.p0, e2 = c.p2 - c.p0;
             if (from) {
                 const Meeting<V> at = meet(d, origin, direction, c.p0, e1, e2);
@@ -134,41 +155,13 @@ void locate_lanes(const Snapshot& snapshot, NormalChoice choice, Side seen_side,
             const Vector3<V> plane = cross3(e1, e2) * hn::Set(d, surface.normal_sign);
             geometric = select3(mask, plane, geometric);
 
-            alignas(64) int32_t is_here[HWY_MAX_BYTES / sizeof(int32_t)];
-            hn::Store(hn::VecFromMask(di, here), di, is_here);
-            // What is by face is read lane by lane: few meshes mix.
-            alignas(64) int32_t is_smooth[HWY_MAX_BYTES / sizeof(int32_t)];
-            hn::Store(hn::Set(di, -1), di, is_smooth);
-            if (surface.face_smooth)
-                for (int k = 0; k < lanes; ++k)
-                    if (is_here[k]) is_smooth[k] = -surface.face_smooth[surface.face(points.triangle[i + k])];
-            const NormalLayer& layer = surface.surface->normals(choice);
             Vector3<V> shading = plane;
-            if (layer.domain != NormalLayer::Domain::flat) {
-                const bool by_vertex = layer.domain == NormalLayer::Domain::vertex;
-                auto at = [&](int k, VI vertex) {
-                    const VI element = by_vertex ? vertex : triangle_corner(di, surface, seen, k);
-                    return read3_at(d, layer.values, element, seen.single);
-                };
-                const Vector3<V> n0 = at(0, v0), n1 = at(1, v1), n2 = at(2, v2);
+            if (!hn::AllFalse(d, smooth)) {
                 Vector3<V> n = add_scaled(add_scaled(n0, n1 - n0, b1), n2 - n0, b2);
                 if (!surface.identity) n = turn_normal(d, surface, n);
-                shading = select3(hn::RebindMask(d, hn::Ne(hn::Load(di, is_smooth), hn::Zero(di))), n, plane);
+                shading = select3(smooth, n, plane);
             }
             normal = select3(mask, shading, normal);
-            if (!surface.face_materials) {
-                const uint32_t material = surface.slot_materials[0];
-                hn::BlendedStore(hn::Set(di, static_cast<int32_t>(material)), here, di,
-                                 reinterpret_cast<int32_t*>(points.material) + i);
-                flags |= snapshot.material_flags[material];
-                return;
-            }
-            for (int k = 0; k < lanes; ++k) {
-                if (!is_here[k]) continue;
-                const uint32_t material = surface.material(points.triangle[i + k]);
-                points.material[i + k] = material;
-                flags |= snapshot.material_flags[material];
-            }
         });
 
         if (from) {

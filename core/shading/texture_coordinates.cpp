@@ -24,28 +24,27 @@ void read_uv_lanes(const Snapshot& snapshot, const std::string& uv_set, const Po
             return hn::GatherIndex(di, reinterpret_cast<const int32_t*>(values), lane);
         };
         const VI slots = pick_integers(points.slot), triangles = pick_integers(points.triangle);
-        alignas(64) uint32_t all[HWY_MAX_BYTES / sizeof(uint32_t)];
-        hn::Store(triangles, di, reinterpret_cast<int32_t*>(all));
         // At the first vertex, and from there to the second and third.
         V u0 = zero, v0 = zero, u1 = zero, v1 = zero, u2 = zero, v2 = zero;
         const auto left = hn::FirstN(di, static_cast<size_t>(count - j));
         for_each_surface(di, snapshot, slots, left, [&](const PlacedSurface& surface, auto here) {
             const Attribute* layer = find_layer(surface.mesh->uv_sets, uv_set);
             if (!layer) return;
-            const auto mask = hn::RebindMask(d, here);
-            const SeenTriangles<VI> seen = triangles_of(di, triangles, here, all);
-            auto value = [&](int k, int c) {
-                const VI element = layer->domain == TRP_DOMAIN_CORNER ? triangle_corner(di, surface, seen, k)
-                                                                      : triangle_vertex(di, surface, seen, k);
-                const VI at = hn::Mul(element, hn::Set(di, static_cast<int32_t>(layer->components)));
-                return read_at(d, layer->values.data() + c, at, seen.single);
-            };
-            const V u = value(0, 0), v = value(0, 1);
-            u0 = hn::IfThenElse(mask, u, u0), v0 = hn::IfThenElse(mask, v, v0);
-            u1 = hn::IfThenElse(mask, hn::Sub(value(1, 0), u), u1);
-            v1 = hn::IfThenElse(mask, hn::Sub(value(1, 1), v), v1);
-            u2 = hn::IfThenElse(mask, hn::Sub(value(2, 0), u), u2);
-            v2 = hn::IfThenElse(mask, hn::Sub(value(2, 1), v), v2);
+            for_each_triangle(di, triangles, here, [&](uint32_t triangle, auto these) {
+                const auto mask = hn::RebindMask(d, these);
+                const float* corners[3];
+                for (int k = 0; k < 3; ++k) {
+                    const uint32_t element = layer->domain == TRP_DOMAIN_CORNER ? surface.corner(triangle, k)
+                                                                                : surface.vertices[3 * triangle + k];
+                    corners[k] = &layer->values[size_t{element} * layer->components];
+                }
+                const auto set = [&](V& value, float number) {
+                    value = hn::IfThenElse(mask, hn::Set(d, number), value);
+                };
+                set(u0, corners[0][0]), set(v0, corners[0][1]);
+                set(u1, corners[1][0] - corners[0][0]), set(v1, corners[1][1] - corners[0][1]);
+                set(u2, corners[2][0] - corners[0][0]), set(v2, corners[2][1] - corners[0][1]);
+            });
         });
         auto combine = [&](const float* b1, const float* b2, V u, V v, float* out_u, float* out_v) {
             const V w1 = hn::GatherIndex(d, b1, lane), w2 = hn::GatherIndex(d, b2, lane);
