@@ -26,8 +26,10 @@ struct Workspace {
     LineTile lines;
     VisibilityTile visibility;
     LineVisibility line_visibility;
-    std::vector<Run> runs;
     std::vector<DrawnLine> drawn;
+    // Of a cluster, where faces hide.
+    std::vector<DrawnLine> whole;
+    std::vector<LineVisibility::Line> split;
     LaneVec3 origins, directions;
 };
 
@@ -55,7 +57,7 @@ struct LineDrawing {
     void see_faces(const TileWork& work, VisibilityTile& visibility) const;
     void add_edges(uint32_t number, const TileReach& reach, Workspace& w) const;
     bool cut_far(DrawnLine& line) const;
-    void add_runs(const DrawnLine& line, const TileReach& reach, Workspace& w) const;
+    void add_runs(const DrawnLine& line, std::span<const Run> runs, const TileReach& reach, Workspace& w) const;
     // The edge of a line's key; `number` becomes its own in the surface's set.
     const PlacedSurface& edge_of(uint32_t key, uint32_t& number) const;
     uint32_t material_of(const PlacedSurface& surface, uint32_t edge) const;
@@ -120,17 +122,14 @@ Vec3 LineDrawing::color_of(const PlacedSurface& surface, uint32_t edge) const {
 }
 
 // A line as the parts of it that are seen, and those that are hidden as the settings say.
-void LineDrawing::add_runs(const DrawnLine& line, const TileReach& reach, Workspace& w) const {
+void LineDrawing::add_runs(const DrawnLine& line, std::span<const Run> runs, const TileReach& reach,
+                           Workspace& w) const {
     const Segment& s = line.segment;
-    uint32_t edge = 0;
-    const PlacedSurface& surface = edge_of(line.key, edge);
-    w.line_visibility.split(s, edges.clusters[line.key / Cluster::kMostPrimitives].slot,
-                            surface.surface->edges().edges[edge], w.runs);
     const auto add = [&](float begin, float end, const Vec3& color) {
         begin = std::max(begin, line.begin), end = std::min(end, line.end);
         if (begin < end) w.drawn.push_back({s, begin, end, color, line.key});
     };
-    for (const Run& run : w.runs) {
+    for (const Run& run : runs) {
         if (run.seen) {
             add(run.begin, run.end, line.color);
         } else if (settings.hidden == LineSettings::Hidden::faint) {
@@ -165,7 +164,12 @@ bool LineDrawing::cut_far(DrawnLine& line) const {
 // The lines of a cluster of edges into w.drawn.
 void LineDrawing::add_edges(uint32_t number, const TileReach& reach, Workspace& w) const {
     Segment segments[Cluster::kMostPrimitives];
+    const uint32_t slot = edges.clusters[number].slot;
+    const std::vector<Edge>& all = edges.surfaces[slot]->surface->edges().edges;
     const uint32_t count = find_segments(edges.placed(edges.clusters[number], projection), reach, segments);
+    std::vector<DrawnLine>& lines = hides ? w.whole : w.drawn;
+    lines.clear();
+    w.split.clear();
     for (uint32_t k = 0; k < count; ++k) {
         const uint32_t key = number * Cluster::kMostPrimitives + segments[k].number;
         uint32_t edge = 0;
@@ -173,11 +177,13 @@ void LineDrawing::add_edges(uint32_t number, const TileReach& reach, Workspace& 
         if (!classes.has(surface, edge)) continue;
         DrawnLine line{segments[k], 0, 1, color_of(surface, edge), key};
         if (!cut_far(line)) continue;
-        if (hides)
-            add_runs(line, reach, w);
-        else
-            w.drawn.push_back(line);
+        lines.push_back(line);
+        w.split.push_back({&segments[k], &all[edge]});
     }
+    if (!hides) return;
+    w.line_visibility.split(slot, w.split);
+    w.drawn.clear();
+    for (size_t n = 0; n < lines.size(); ++n) add_runs(lines[n], w.line_visibility.runs(n), reach, w);
 }
 
 // A block's lines onto the paper.
@@ -233,7 +239,6 @@ void LineDrawing::tile(const TileWork& work) const {
         if (*job.cancelled) return;
         if (hides && settings.hidden == LineSettings::Hidden::none && w.visibility.hides(edges.clusters[number]))
             continue;
-        w.drawn.clear();
         add_edges(number, reach, w);
         w.lines.draw(w.drawn, profile, cue);
     }

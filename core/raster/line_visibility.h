@@ -1,17 +1,9 @@
-// Which parts of an edge are seen, by a visibility buffer.
-//
-// A point of an edge is hidden where a triangle that is seen in one of the four pixels around it covers the point and
-// lies before it, unless it is of a face that the edge belongs to, known by its number. Where no seen triangle covers
-// the point, as where faces are smaller than pixels, it is seen with its faces, or where nothing is seen, or before the
-// triangle of the nearest pixel. Before means by more than a step of the grid and a millionth, so that surfaces which
-// touch keep their edges. The ends of seen parts are found by halving.
+// Which parts of edges are seen: points along them are tested, and the ends of seen parts found by halving.
 #pragma once
 
-#include <vector>
+#include <span>
 
-#include "raster/cluster_vertices.h"
-#include "raster/segments.h"
-#include "raster/visibility_tile.h"
+#include "raster/seen_planes.h"
 
 namespace trp {
 
@@ -24,59 +16,48 @@ struct Run {
 class LineVisibility {
   public:
     // How many pixels farther than lines reach the visibility around a tile must be known, but for the film's end.
-    static constexpr uint32_t kAround = 4;
+    static constexpr uint32_t kAround = 8;
 
     // `triangles`: those whose keys the visibility tiles hold.
-    LineVisibility(const DrawList& triangles, const Projection& projection);
+    LineVisibility(const DrawList& triangles, const Projection& projection) : planes_(triangles, projection) {}
 
     // Begins a tile of lines, whose surroundings `visibility` holds.
     void begin(const TileReach& tile, const VisibilityTile& visibility);
-    // The parts of a segment of a surface's edge, as far as they reach the tile.
-    void split(const Segment& segment, uint32_t slot, const Edge& edge, std::vector<Run>& runs);
+    // A segment of an edge.
+    struct Line {
+        const Segment* segment;
+        const Edge* edge;
+    };
+    // Parts lines of one surface, as far as they reach the tile.
+    void split(uint32_t slot, std::span<const Line> lines);
+    // Those of a line, by its place among the last ones.
+    std::span<const Run> runs(size_t line) const {
+        return {runs_.data() + first_run_[line], runs_.data() + first_run_[line + 1]};
+    }
 
   private:
-    // A point of an edge: in 1/256 pixel from the centre of the tile's first pixel.
-    struct Place {
-        double x, y, nearness;
-        uint32_t slot;
-        const uint32_t* faces;
+    // Points of a line that are tested first: the middles of the parts [first, last] of `count` equal ones.
+    struct Parts {
+        double count;
+        int first, last;  // none: last < first
     };
-    // What a triangle is to a point: whether it covers it, and its plane's nearness there, times and beside a weight.
-    struct Cover {
-        bool covers;
-        double weighted_nearness, weight;
-        double slack;  // the change of the weighted nearness over a step of the grid
-        bool is_before(double nearness) const {
-            return weight > 0 ? weighted_nearness - slack > nearness * weight
-                              : weighted_nearness + slack < nearness * weight;
-        }
+    // Between two points of a line, one seen and one not.
+    struct Change {
+        size_t line;
+        double low, high;
+        bool low_is_seen;
     };
+    Parts parts_of(const Segment& segment) const;
+    void add_point(const Line& line, double at);
 
-    // A cluster that this tile has needed, each of its vertices and triangles in one place.
-    struct Needed {
-        struct Vertex {
-            float x, y, near;
-            bool is_cut;
-        };
-        uint32_t slot;
-        const uint32_t* primitives;
-        uint8_t corners[Cluster::kMostPrimitives][4];
-        Vertex vertices[Cluster::kMostVertices];
-    };
-
-    bool sees(const Place& place);
-    bool is_own(const Place& place, uint32_t key);
-    Cover cover(const Place& place, uint32_t key);
-    Cover cover_cut(const Place& place, uint32_t key) const;
-    const Needed& cluster_of(uint32_t key);
-
-    const DrawList& triangles_;
-    const Projection& projection_;
     TileReach tile_{};
-    const VisibilityTile* visibility_ = nullptr;
-    std::vector<Needed*> needed_by_;  // by cluster; null where this tile has not needed it
-    std::vector<uint32_t> numbers_;   // of the clusters needed, whose memory comes first in `memory_`
-    std::vector<std::unique_ptr<Needed>> memory_;
+    SeenPlanes planes_;
+    EdgePoints points_;
+    std::vector<Parts> parts_;
+    std::vector<uint8_t> seen_, seen_between_;
+    std::vector<Change> changes_;
+    std::vector<Run> runs_;
+    std::vector<size_t> first_run_;
 };
 
 }  // namespace trp

@@ -38,10 +38,6 @@ class VisibilityTile {
 
     // The lanes of a block, by its place in the tile.
     const uint32_t* keys(uint32_t block) const { return &keys_[size_t{block} * kBatch]; }
-    // Of a pixel of the film within the tile.
-    uint32_t key_at(int32_t x, int32_t y) const {
-        return keys_[tile_lane(blocks_across_, static_cast<uint32_t>(x - x0_), static_cast<uint32_t>(y - y0_))];
-    }
     // Whether all of the cluster lies behind what is drawn, by a thousandth of its nearness at least.
     bool hides(const DrawnCluster& cluster);
     // Removes a lane from what is seen, so that nothing is seen behind it either.
