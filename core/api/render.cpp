@@ -143,7 +143,7 @@ TrpStatus trp_render_add_pass(TrpRender* render, const char* name) {
     return guard([&] {
         check_idle(render);
         check_pointer(name, "name");
-        render->passes.add(find_pass(name));
+        render->passes.add(find_pass(name, kMethods[render->method].name));
         return TRP_OK;
     });
 }
@@ -193,7 +193,7 @@ TrpStatus trp_render_read(const TrpRender* render, const char* pass, uint32_t x,
         const Film& film = film_of(render);
         check_pointer(pass, "pass");
         check_pointer(buffer, "buffer");
-        const PassId id = find_pass(pass);
+        const PassId id = find_pass(pass, kMethods[render->method].name);
         if (!film.passes().has(id)) fail(TRP_ERROR_STATE, "pass {} was not asked for before the render ran", pass);
         const Window& window = film.window();
         if (x < window.x || y < window.y || x + uint64_t{width} > window.x + uint64_t{window.w} ||

@@ -69,6 +69,9 @@ int run(Options options) {
         throw UsageError(fmt::format("--pixel: '{}' is not X,Y", options.pixel));
     }
     check_picture(options);
+    if (options.method != "gouraud" && options.method != "phong") {
+        throw UsageError(fmt::format("--method: {} does not interpolate; gouraud and phong do", options.method));
+    }
     LoadedPicture picture = load_picture(options);
     if (pixel[0] >= picture.width || pixel[1] >= picture.height) {
         throw UsageError(fmt::format("--pixel: {} lies outside the picture of {} x {}", options.pixel, picture.width,

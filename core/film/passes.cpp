@@ -5,6 +5,14 @@
 #include "base/error.h"
 
 namespace trp {
+namespace {
+
+bool gives(const std::string& method, const Pass& pass) {
+    const std::string names = fmt::format(" {} ", pass.methods);
+    return names == " * " || names.find(fmt::format(" {} ", method)) != std::string::npos;
+}
+
+}  // namespace
 
 const Pass kPasses[kPassCount] = {
     {"Combined", "RGBA", "The picture: radiance in W/(m² sr) and coverage, colour premultiplied by it", "*", true},
@@ -25,12 +33,13 @@ uint32_t channel_count(PassId pass) {
     return static_cast<uint32_t>(std::strlen(kPasses[pass].channels));
 }
 
-PassId find_pass(const std::string& name) {
+PassId find_pass(const std::string& name, const std::string& method) {
     for (uint32_t p = 0; p < kPassCount; ++p)
-        if (name == kPasses[p].name) return static_cast<PassId>(p);
+        if (name == kPasses[p].name && gives(method, kPasses[p])) return static_cast<PassId>(p);
     std::string known;
-    for (const Pass& pass : kPasses) known += std::string(known.empty() ? "" : ", ") + pass.name;
-    fail(TRP_ERROR_ARGUMENT, "there is no pass \"{}\"; the passes are {}", name, known);
+    for (const Pass& pass : kPasses)
+        if (gives(method, pass)) known += std::string(known.empty() ? "" : ", ") + pass.name;
+    fail(TRP_ERROR_ARGUMENT, "{} has no pass \"{}\"; its passes are {}", method, name, known);
 }
 
 }  // namespace trp

@@ -35,7 +35,7 @@ struct Pass {
 extern const Pass kPasses[kPassCount];
 
 uint32_t channel_count(PassId pass);
-// Throws Error where there is no such pass.
-PassId find_pass(const std::string& name);
+// Throws Error where the method has no such pass.
+PassId find_pass(const std::string& name, const std::string& method);
 
 }  // namespace trp

@@ -34,6 +34,11 @@ struct ClusterSet {
     std::vector<Normal> normals;
     // Per primitive, which of the cluster's vertices its corners are. Padded, to be read in whole vectors.
     std::vector<uint8_t> corners[3];
+
+    uint64_t bytes() const {
+        return sizeof(Cluster) * clusters.size() + sizeof(uint32_t) * (primitives.size() + vertices.size()) +
+               sizeof(Normal) * normals.size() + corners[0].size() + corners[1].size() + corners[2].size();
+    }
 };
 
 // Clusters of primitives with so many corners (2 or 3), which are given in `vertices`, in Morton order of their

@@ -84,6 +84,7 @@ const NormalLayer& Surface::normals(NormalChoice choice) const {
         AveragedNormals made = averaged_normals(*mesh_, weight, true);
         averaged.values = std::move(made.values);
         averaged.layer = {made.domain, averaged.values.data()};
+        bytes_on_use_ += sizeof(Vec3) * averaged.values.size();
     });
     return averaged.layer;
 }
@@ -101,18 +102,23 @@ const ClusterSet& Surface::clusters() const {
                 clusters_.normals[k] = {rounded(normal.x), rounded(normal.y), rounded(normal.z), 0};
             }
         });
+        bytes_on_use_ += clusters_.bytes();
     });
     return clusters_;
 }
 
 const EdgeSet& Surface::edges() const {
-    std::call_once(edges_once_, [this] { edges_ = make_edges(*mesh_); });
+    std::call_once(edges_once_, [this] {
+        edges_ = make_edges(*mesh_);
+        bytes_on_use_ +=
+            sizeof(Edge) * edges_.edges.size() + sizeof(Vec3) * edges_.face_normals.size() + edges_.clusters.bytes();
+    });
     return edges_;
 }
 
 uint64_t Surface::bytes() const {
     return sizeof(uint32_t) * (triangle_vertices_.size() + triangle_corners_.size() + triangle_faces_.size()) +
-           sizeof(Vec3) * normal_values_.size();
+           sizeof(Vec3) * normal_values_.size() + bytes_on_use_;
 }
 
 }  // namespace trp

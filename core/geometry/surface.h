@@ -1,6 +1,7 @@
 // A mesh made ready to be hit: its triangles and its normals. Made once for a mesh, never changed, shared by snapshots.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -40,7 +41,7 @@ class Surface {
     // Of the triangles, or where there are none, of the mesh's own edges; at the first time sample.
     const Bounds& bounds() const { return bounds_; }
     uint32_t dropped_faces() const { return dropped_faces_; }  // without area
-    uint64_t bytes() const;                                    // held beside the mesh
+    uint64_t bytes() const;                                    // held beside the mesh, what was made on first use too
 
   private:
     void make_triangles();
@@ -62,6 +63,7 @@ class Surface {
     mutable ClusterSet clusters_;
     mutable std::once_flag edges_once_;
     mutable EdgeSet edges_;
+    mutable std::atomic<uint64_t> bytes_on_use_ = 0;
 };
 
 }  // namespace trp

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-
 #include <optional>
 
 namespace trp {
@@ -94,45 +93,57 @@ ScanPolygon::ScanPolygon(const PlacedSurface& surface, uint32_t face, const Film
     }
     // Seen in a pixel, and yet by rounding behind the near plane.
     if (points_.empty()) points_.push_back({corners[0], corners[0], 0, 0, 0});
+    for (const PolygonPoint& p : points_) low_ = std::min(low_, p.y), high_ = std::max(high_, p.y);
 }
 
-ScanLine ScanPolygon::at(double x, double y) const {
-    ScanLine line;
-    // Rounding may have put the point just above or below the polygon; one that is thinner than the grid's step has no
-    // scan line, and the value of the nearest point.
-    double low = 1e30, high = -1e30, least = 1e30;
+const PolygonPoint& ScanPolygon::nearest(double x, double y) const {
     const PolygonPoint* nearest = nullptr;
+    double least = 0;
     for (const PolygonPoint& p : points_) {
-        low = std::min(low, p.y), high = std::max(high, p.y);
         const double distance = std::hypot(p.x - x, p.y - y);
         if (nearest && distance >= least) continue;
         nearest = &p;
         least = distance;
     }
-    std::fill_n(line.ends, 4, *nearest);
-    line.alpha = line.beta = 1;
-    if (high - low < 1.0 / kSubpixels) return line;
-    y = std::clamp(y, low, high - 0.5 / kSubpixels);
+    return *nearest;
+}
 
-    struct Crossing {
-        double x;
-        float share;  // of the upper end
-        const PolygonPoint *upper, *lower;
-    };
-    std::vector<Crossing> crossings;
+const ScanPolygon::Row& ScanPolygon::row(double y) {
+    const auto known = std::find_if(rows_.begin(), rows_.end(), [&](const Row& row) { return row.y == y; });
+    if (known != rows_.end()) return *known;
+    if (rows_.size() < kBlockSide) rows_.emplace_back();
+    Row& row = rows_[next_row_];
+    next_row_ = (next_row_ + 1) % kBlockSide;
+    row.y = y;
+    row.crossings.clear();
     for (size_t k = 0; k < points_.size(); ++k) {
         const PolygonPoint *upper = &points_[k], *lower = &points_[k + 1 < points_.size() ? k + 1 : 0];
         if ((upper->y <= y) == (lower->y <= y)) continue;
         if (upper->y < lower->y) std::swap(upper, lower);
         const double share = (y - lower->y) / (upper->y - lower->y);
-        crossings.push_back({lower->x + (upper->x - lower->x) * share, static_cast<float>(share), upper, lower});
+        row.crossings.push_back({lower->x + (upper->x - lower->x) * share, static_cast<float>(share), upper, lower});
     }
-    if (crossings.size() < 2) return line;
-    std::stable_sort(crossings.begin(), crossings.end(),
+    std::stable_sort(row.crossings.begin(), row.crossings.end(),
                      [](const Crossing& a, const Crossing& b) { return a.x < b.x; });
+    return row;
+}
+
+ScanLine ScanPolygon::at(double x, double y) {
+    ScanLine line;
+    // Rounding may have put the point just above or below the polygon; one that is thinner than the grid's step has no
+    // scan line, and the value of the nearest point.
+    const bool thin = high_ - low_ < 1.0 / kSubpixels;
+    static const std::vector<Crossing> kNone;
+    const std::vector<Crossing>& crossings =
+        thin ? kNone : row(std::clamp(y, low_, high_ - 0.5 / kSubpixels)).crossings;
+    if (crossings.size() < 2) {
+        std::fill_n(line.ends, 4, nearest(x, y));
+        line.alpha = line.beta = 1;
+        return line;
+    }
     // Concave polygons are crossed more than twice: the span that holds the point, or comes nearest to it.
     size_t best = 0;
-    least = 1e30;
+    double least = 1e30;
     for (size_t k = 0; k + 1 < crossings.size(); k += 2) {
         const double away = std::max({crossings[k].x - x, x - crossings[k + 1].x, 0.0});
         if (away < least) least = away, best = k;

@@ -35,10 +35,26 @@ class ScanPolygon {
     ScanPolygon(const PlacedSurface& surface, uint32_t face, const FilmTransform& transform,
                 const Projection& projection);
     // At a point of the film in pixels, which the polygon covers.
-    ScanLine at(double x, double y) const;
+    ScanLine at(double x, double y);
 
   private:
+    // Where a scan line crosses a side.
+    struct Crossing {
+        double x;
+        float share;  // of the upper end
+        const PolygonPoint *upper, *lower;
+    };
+    struct Row {
+        double y;
+        std::vector<Crossing> crossings;  // from left to right
+    };
+    const Row& row(double y);
+    const PolygonPoint& nearest(double x, double y) const;
+
     std::vector<PolygonPoint> points_;
+    double low_ = 1e30, high_ = -1e30;
+    std::vector<Row> rows_;  // the last ones asked for, so that large polygons are not searched pixel by pixel
+    size_t next_row_ = 0;
 };
 
 // What a scan line makes of values at a mesh's corners: I1 … I4, A, B and I.

@@ -35,6 +35,8 @@ TEST(RenderCalls, NullArgumentsAndNames) {
     Render made(scene, 8, 8, kFewSamples);
     EXPECT_TRUE(fails(trp_render_add_pass(made, nullptr), TRP_ERROR_ARGUMENT, {"name"}));
     EXPECT_TRUE(fails(trp_render_add_pass(made, "depth"), TRP_ERROR_ARGUMENT, {"\"depth\"", "Depth"}));
+    Render lines(scene, 8, 8, {}, {}, "wireframe");
+    EXPECT_TRUE(fails(trp_render_add_pass(lines, "Albedo"), TRP_ERROR_ARGUMENT, {"wireframe", "\"Albedo\"", "Depth"}));
     for (const uint32_t size : {0u, 4u, 12u, 1u << 20}) {
         callbacks = {};
         callbacks.struct_size = size;
@@ -127,6 +129,29 @@ TEST(RenderCalls, Read) {
     EXPECT_TRUE(fails(read("Normal", 0, 0, 20, 10, 600), TRP_ERROR_STATE, {"Normal"}));
     render.run();
     EXPECT_EQ(read("Normal", 0, 0, 20, 10, 600), TRP_OK);
+}
+
+// Films are used again: nothing of an earlier picture is seen in a later one, nor where a cancelled one has not drawn.
+TEST(RenderCalls, RunsDoNotShowEachOther) {
+    SmallScene scene;
+    scene.commit();
+    Render render(scene, 70, 40, kFewSamples, {"Depth"}, "phong");
+    const std::vector<float> first = render.run().read().values, depth = render.read("Depth").values;
+    ASSERT_EQ(trp_render_set(render, "shading.ambient", "3,2,1"), TRP_OK);
+    for (int run = 0; run < 3; ++run) EXPECT_NE(render.run().read().values, first);
+    ASSERT_EQ(trp_render_set(render, "shading.ambient", "0,0,0"), TRP_OK);
+    for (int run = 0; run < 3; ++run) {
+        EXPECT_EQ(render.run().read().values, first);
+        EXPECT_EQ(render.read("Depth").values, depth);
+    }
+    TrpCallbacks callbacks;
+    ASSERT_EQ(trp_callbacks_init(&callbacks, sizeof callbacks), TRP_OK);
+    callbacks.progress = [](void*, const TrpProgress*) { return 0; };
+    ASSERT_EQ(trp_render_set(render, "threads", "1"), TRP_OK);
+    while (trp_render_run(render, &callbacks) != TRP_CANCELLED) continue;
+    const std::vector<float> cut = render.read().values;
+    for (size_t i = 0; i < cut.size(); ++i) ASSERT_TRUE(cut[i] == 0 || cut[i] == first[i]) << i;
+    EXPECT_EQ(render.run().read().values, first);
 }
 
 TEST(RenderCalls, Statistics) {

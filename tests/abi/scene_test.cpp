@@ -48,6 +48,13 @@ TEST(SceneCalls, InfoAndWarnings) {
     EXPECT_GT(info.mesh_bytes, 0u);
     EXPECT_GE(info.held_bytes, info.mesh_bytes);
 
+    // What is made when it is first needed counts from the next commit on.
+    const uint64_t before = info.held_bytes;
+    Render(scene, 8, 8, {}, {}, "wireframe").run();
+    ASSERT_EQ(trp_scene_commit(scene, 1), TRP_OK);
+    ASSERT_EQ(trp_scene_info(scene, &info), TRP_OK);
+    EXPECT_GT(info.held_bytes, before + 16 * sizeof(float));
+
     ASSERT_EQ(trp_scene_warning_count(scene), 1u);
     TrpWarning warning{};
     EXPECT_TRUE(fails(trp_scene_warning(scene, 0, nullptr), TRP_ERROR_ARGUMENT, {"warning"}));

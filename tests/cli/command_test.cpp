@@ -134,6 +134,7 @@ TEST_F(Command, Misuse) {
         {render({"--set", "sample=4"}), "--set sample=4"},
         {render({"--samples", "none"}), "--set samples=none"},
         {render({"--pass", "Nothing"}), "--pass Nothing"},
+        {{"render", scene, "--output", picture, "--method", "wireframe", "--pass", "Normal"}, "wireframe has no pass"},
         {render({"--frobnicate"}), "--frobnicate"},
         {render({"another.glb"}), "another.glb"},
     };
@@ -222,7 +223,7 @@ TEST_F(Command, PickShowsTheScanLineOfAPixel) {
     const Outcome text =
         run({"pick", scene, "--pixel", "32,16", "--width", "64", "--height", "32", "--method", "phong"});
     EXPECT_NE(text.out.find("normals interpolated over face"), std::string::npos);
-    expect_error(run({"pick", scene, "--pixel", "0,0", "--method", "flat", "--quiet"}), 1, "scan lines");
+    expect_error(run({"pick", scene, "--pixel", "0,0", "--method", "flat", "--quiet"}), 2, "gouraud and phong");
 }
 
 TEST_F(Command, Tables) {

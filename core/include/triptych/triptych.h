@@ -458,7 +458,7 @@ TRP_API TrpStatus trp_render_set_film(TrpRender* render, uint32_t width, uint32_
                                       uint32_t window_y, uint32_t window_width, uint32_t window_height);
 /* Sets a setting of the table from text: "16", "0.5", "on", "phong", "0.1,0.1,0.2". */
 TRP_API TrpStatus trp_render_set(TrpRender* render, const char* name, const char* value);
-/* Asks for a pass of the table. Combined is always there. */
+/* Asks for a pass of the table. Combined is always there. TRP_ERROR_ARGUMENT for one that the method does not have. */
 TRP_API TrpStatus trp_render_add_pass(TrpRender* render, const char* name);
 
 typedef struct TrpProgress {
