@@ -6,9 +6,12 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <exception>
+#include <functional>
 #include <thread>
+#include <vector>
 
 #ifdef __SANITIZE_THREAD__
 #include <sanitizer/tsan_interface.h>
@@ -70,6 +73,32 @@ void parallel_ranges(size_t count, size_t grain, Work&& work) {
     auto range_work = [&](const tbb::blocked_range<size_t>& r) { work(r.begin(), r.end()); };
     ForkJoin fork;
     tbb::parallel_for(tbb::blocked_range<size_t>(0, count, grain), fork.wrap(range_work));
+}
+
+// Sorts by runs of equal length, which are then merged two by two, within the current arena: oneTBB's own sort is
+// nothing that ForkJoin could tell the sanitizer about.
+template <class T, class Less = std::less<T>>
+void parallel_sort(std::vector<T>& values, Less less = {}) {
+    constexpr size_t kRuns = 16, kShort = 4096;
+    const size_t count = values.size(), length = std::max(kShort, (count + kRuns - 1) / kRuns);
+    const auto at = [&](std::vector<T>& v, size_t place) {
+        return v.begin() + static_cast<ptrdiff_t>(std::min(place, count));
+    };
+    parallel_ranges((count + length - 1) / length, 1, [&](size_t begin, size_t end) {
+        for (size_t run = begin; run < end; ++run)
+            std::sort(at(values, run * length), at(values, (run + 1) * length), less);
+    });
+    std::vector<T> merged(count > length ? count : 0);
+    for (size_t sorted = length; sorted < count; sorted *= 2) {
+        parallel_ranges((count + 2 * sorted - 1) / (2 * sorted), 1, [&](size_t begin, size_t end) {
+            for (size_t pair = begin; pair < end; ++pair) {
+                const size_t first = 2 * pair * sorted;
+                std::merge(at(values, first), at(values, first + sorted), at(values, first + sorted),
+                           at(values, first + 2 * sorted), at(merged, first), less);
+            }
+        });
+        values.swap(merged);
+    }
 }
 
 // Calls work() once on each of so many threads of the current arena.

@@ -1,7 +1,5 @@
 #include "geometry/clusters.h"
 
-#include <tbb/parallel_sort.h>
-
 #include "base/parallel.h"
 
 namespace trp {
@@ -41,7 +39,7 @@ ClusterSet make_clusters(const Mesh& mesh, uint32_t corners, const uint32_t* ver
             order[p] = uint64_t{morton_code(centre / static_cast<float>(corners), bounds)} << 32 | p;
         }
     });
-    tbb::parallel_sort(order.begin(), order.end());
+    parallel_sort(order);
 
     constexpr size_t kPadding = 64;
     set.primitives.reserve(count);

@@ -1,7 +1,5 @@
 #include "raster/draw_list.h"
 
-#include <tbb/parallel_sort.h>
-
 #include <algorithm>
 #include <cmath>
 #include <tuple>
@@ -81,7 +79,7 @@ DrawList make_draw_list(const Snapshot& snapshot, const Projection& projection, 
     if (list.clusters.size() >= (uint64_t{1} << 31) / Cluster::kMostPrimitives)
         fail(TRP_ERROR_MEMORY, "{} groups of triangles or edges are before the camera; at most {} can be drawn",
              list.clusters.size(), (uint64_t{1} << 31) / Cluster::kMostPrimitives);
-    tbb::parallel_sort(list.clusters.begin(), list.clusters.end(), [](const DrawnCluster& a, const DrawnCluster& b) {
+    parallel_sort(list.clusters, [](const DrawnCluster& a, const DrawnCluster& b) {
         return std::tuple(-a.nearness, a.slot, a.cluster) < std::tuple(-b.nearness, b.slot, b.cluster);
     });
     return list;
