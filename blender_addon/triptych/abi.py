@@ -166,6 +166,9 @@ class MaterialDesc(c.Structure):
         ("thin", i32),
         ("double_sided", i32),
         ("index", i32),
+        ("fresnel", i32),
+        ("priority", i32),
+        ("absorption", f32 * 3),
     ]
 
 

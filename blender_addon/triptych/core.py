@@ -235,7 +235,8 @@ class Scene:
         desc.ambient_is_diffuse = material.ambient is None
         desc.mirror_is_specular = material.mirror is None
         desc.normal, desc.thin, desc.double_sided = material.normal, material.thin, material.double_sided
-        desc.index = material.index
+        desc.index, desc.fresnel, desc.priority = material.index, material.fresnel, material.priority
+        desc.absorption[:] = material.absorption
         return self._add("material", desc)
 
     def add_light(self, light):

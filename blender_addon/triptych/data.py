@@ -123,6 +123,9 @@ class Material:
     thin: bool = False
     double_sided: bool = True
     index: int = 0
+    fresnel: bool = False
+    priority: int = 0
+    absorption: tuple = (0.0, 0.0, 0.0)  # 1/m
 
 
 @dataclass

@@ -35,6 +35,9 @@ class Surface:
     alpha: Value = ONE
     normal: Value = None
     thin: bool = False
+    fresnel: bool = False
+    priority: int = 0
+    absorption: tuple = (0.0, 0.0, 0.0)
 
 
 def export_material(material, textures, warn):
@@ -56,7 +59,14 @@ def _finish(program, surface, name):
     values = {key: getattr(surface, key) for key in data.COEFFICIENTS}
     values["normal"] = surface.normal
     nodes, place = program.used([value.node for value in values.values() if value is not None])
-    result = data.Material(name, nodes=nodes, thin=surface.thin)
+    result = data.Material(
+        name,
+        nodes=nodes,
+        thin=surface.thin,
+        fresnel=surface.fresnel,
+        priority=surface.priority,
+        absorption=surface.absorption,
+    )
     for key, value in values.items():
         if value is None:
             continue
@@ -85,6 +95,8 @@ def _override(surface, settings):
     surface.transmission = color(settings.transmission)
     surface.ior = scalar(settings.ior)
     surface.thin = settings.thin
+    surface.fresnel, surface.priority = settings.fresnel, settings.priority
+    surface.absorption = tuple(settings.absorption)
 
 
 def _without_nodes(reader, material):
@@ -249,15 +261,14 @@ class _MaterialReader:
     def _ShaderNodeBsdfGlass(self, node, stack):
         p = self.program
         tint, ior = self._value(node, stack, "Color"), self._value(node, stack, "IOR")
-        reflectance = _reflectance(p, ior)
         glossy = self._glossy(node, stack)
-        mirror = p.multiply(tint, reflectance)
         return replace(
             glossy,
-            specular=highlight(p, mirror, glossy.shininess),
-            mirror=mirror,
-            transmission=p.multiply(tint, p.one_minus(reflectance)),
+            specular=highlight(p, p.multiply(tint, _reflectance(p, ior)), glossy.shininess),
+            mirror=tint,
+            transmission=tint,
             ior=ior,
+            fresnel=True,
         )
 
     def _ShaderNodeBsdfRefraction(self, node, stack):
@@ -334,4 +345,6 @@ class _MaterialReader:
             ior=chosen("ior", "transmission"),
             normal=a.normal if a.normal is not None else b.normal,
             thin=(a.thin and not a.transmission.is_always(0)) or (b.thin and not b.transmission.is_always(0)),
+            # Of both or of none: what Fresnel's equations weigh cannot be told from what they do not.
+            fresnel=(a.fresnel or a.mirror is None) and (b.fresnel or b.mirror is None) and (a.fresnel or b.fresnel),
         )

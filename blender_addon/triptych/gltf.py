@@ -152,6 +152,12 @@ class _Writer:
         if material.normal != data.NONE:
             extras["normal"] = material.normal
         extras.update(thin=material.thin, double_sided=material.double_sided, index=material.index)
+        if material.fresnel:
+            extras["fresnel"] = True
+        if material.priority:
+            extras["priority"] = material.priority
+        if any(material.absorption):
+            extras["absorption"] = plain(material.absorption)
         result = {"name": material.name, "doubleSided": material.double_sided, "extras": {"triptych": extras}}
         result.update(self._pbr(material))
         return result

@@ -178,8 +178,12 @@ class TRIPTYCH_MATERIAL_PT_coefficients(_Panel, bpy.types.Panel):
         column.prop(chosen, "use_mirror")
         if chosen.use_mirror:
             column.prop(chosen, "mirror")
-        for name in ("transmission", "ior", "thin"):
+        for name in ("transmission", "ior", "fresnel", "thin"):
             column.prop(chosen, name)
+        solid = layout.column()
+        solid.active = not chosen.thin
+        for name in ("priority", "absorption"):
+            solid.prop(chosen, name)
 
 
 class TRIPTYCH_LIGHT_PT_light(_Panel, bpy.types.Panel):

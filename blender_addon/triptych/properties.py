@@ -193,6 +193,23 @@ class TriptychMaterialSettings(bpy.types.PropertyGroup):
         name="IOR", description="η, the index of refraction", default=1.5, min=0.001, max=1000, soft_max=3
     )
     thin: BoolProperty(name="Thin", description="Transmitted light goes straight on")
+    fresnel: BoolProperty(
+        name="Fresnel",
+        description="Fresnel's equations weigh mirrored and transmitted light too, by the angle and the IOR",
+    )
+    priority: IntProperty(
+        name="Priority",
+        description="Of solids that lie in each other, the one with the greater priority fills the space",
+        min=-1000,
+        max=1000,
+    )
+    absorption: FloatVectorProperty(
+        name="Absorption",
+        description="What a solid takes from light on its way, per metre: it fades as exp(-absorption · distance)",
+        size=3,
+        min=0,
+        soft_max=10,
+    )
 
 
 class TriptychLightSettings(bpy.types.PropertyGroup):

@@ -8,6 +8,7 @@
 #include "film/tiles.h"
 #include "scene/scene.h"
 #include "shading/snapshot.h"
+#include "trace/ray_tracing.h"
 
 struct TrpScene {
     trp::Scene data;
@@ -25,6 +26,7 @@ struct TrpRender {
     std::atomic<bool> cancelled{false}, running{false};
     std::mutex state;  // between a run's beginning or end and a cancel from another thread
     TrpStatistics statistics{};
+    std::vector<trp::RayNode> tree;  // of the last pixel that was asked for
 };
 
 namespace trp {

@@ -81,6 +81,11 @@ void check_idle(const TrpRender* render) {
     if (render->running) fail(TRP_ERROR_STATE, "the render is running");
 }
 
+void check_pixel(const Window& window, uint32_t x, uint32_t y) {
+    if (x >= window.width || y >= window.height)
+        fail(TRP_ERROR_ARGUMENT, "pixel ({}, {}) is not of a picture of {} x {}", x, y, window.width, window.height);
+}
+
 const Film& film_of(const TrpRender* render) {
     check_pointer(render, "render");
     if (!render->film) fail(TRP_ERROR_STATE, "the render has not run");
@@ -169,6 +174,8 @@ TrpStatus trp_render_run(TrpRender* render, const TrpCallbacks* callbacks) {
         s.render_seconds = seconds_since(start);
         s.primary_rays = counts.primary_rays;
         s.shadow_rays = counts.shadow_rays;
+        s.reflection_rays = counts.reflection_rays;
+        s.transmission_rays = counts.transmission_rays;
         s.primary_seconds = 1e-9 * static_cast<double>(counts.primary_time);
         s.shadow_seconds = 1e-9 * static_cast<double>(counts.shadow_time);
         s.shading_seconds = 1e-9 * static_cast<double>(counts.shading_time);
@@ -224,9 +231,7 @@ TrpStatus trp_render_pick_scan_line(const TrpRender* render, uint32_t x, uint32_
         const std::string method = kMethods[render->method].name;
         if (method != "gouraud" && method != "phong")
             fail(TRP_ERROR_STATE, "{} interpolates nothing along scan lines; gouraud and phong do", method);
-        if (x >= render->window.width || y >= render->window.height)
-            fail(TRP_ERROR_ARGUMENT, "pixel ({}, {}) is not of a picture of {} x {}", x, y, render->window.width,
-                 render->window.height);
+        check_pixel(render->window, x, y);
         Film film({render->window.width, render->window.height, x, y, 1, 1}, PassList());
         std::atomic<bool> cancelled{false};
         RenderJob::Counts counts;
@@ -251,6 +256,54 @@ TrpStatus trp_render_pick_scan_line(const TrpRender* render, uint32_t x, uint32_
             copy(picked.values.value, out.value);
         }
         write_struct(scan_line, out, "scan_line");
+        return TRP_OK;
+    });
+}
+
+TrpStatus trp_render_trace_tree(TrpRender* render, uint32_t x, uint32_t y, uint32_t* count) {
+    return guard([&] {
+        check_pointer(count, "count");
+        check_idle(render);
+        const std::string method = kMethods[render->method].name;
+        if (method != "ray_tracing") fail(TRP_ERROR_STATE, "{} traces no tree; ray_tracing does", method);
+        check_pixel(render->window, x, y);
+        Film film({render->window.width, render->window.height, x, y, 1, 1}, PassList());
+        std::atomic<bool> cancelled{false};
+        RenderJob::Counts counts;
+        render->tree = trace_ray_tree({render->snapshot, render->settings, &film, &cancelled, &counts}, x, y);
+        *count = static_cast<uint32_t>(render->tree.size());
+        return TRP_OK;
+    });
+}
+
+TrpStatus trp_render_ray(const TrpRender* render, uint32_t index, TrpRay* ray) {
+    return guard([&] {
+        check_idle(render);
+        if (index >= render->tree.size())
+            fail(TRP_ERROR_ARGUMENT, "there is no ray {} in the tree; there are {}", index, render->tree.size());
+        const RayNode& node = render->tree[index];
+        TrpRay out{};
+        out.kind = static_cast<int32_t>(node.kind);
+        out.end = static_cast<int32_t>(node.end);
+        out.parent = node.parent < 0 ? TRP_NO_PARENT : static_cast<uint32_t>(node.parent);
+        out.object = out.material = "";
+        out.instance = TRP_NO_ID;
+        if (node.end == RayNode::End::surface) {
+            const PlacedSurface& surface = render->snapshot->surfaces[node.slot];
+            out.object = surface.mesh->name.c_str();
+            out.material = render->snapshot->materials[node.material].name.c_str();
+            out.instance = surface.instance;
+        }
+        out.distance = node.distance;
+        const auto copy = [](const Vec3& from, float* to) { std::copy_n(&from.x, 3, to); };
+        copy(node.origin, out.origin);
+        copy(node.direction, out.direction);
+        copy(node.position, out.position);
+        copy(node.normal, out.normal);
+        copy(node.local, out.local);
+        copy(node.weight, out.weight);
+        copy(node.intensity, out.intensity);
+        write_struct(ray, out, "ray");
         return TRP_OK;
     });
 }

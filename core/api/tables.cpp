@@ -5,6 +5,7 @@
 #include "raster/rasterizer.h"
 #include "scene/nodes.h"
 #include "trace/ray_casting.h"
+#include "trace/ray_tracing.h"
 
 namespace trp {
 
@@ -22,6 +23,9 @@ const MethodRow kMethods[] = {
     {"ray_casting", "Ray Casting",
      "One ray to a sample: the nearest surface with light, shadow and highlight, no reflections and no refraction",
      ray_casting},
+    {"ray_tracing", "Ray Tracing",
+     "Recursive ray tracing: mirror reflection and transparency, thin or by refraction, from every surface on",
+     ray_tracing},
 };
 const uint32_t kMethodCount = sizeof kMethods / sizeof kMethods[0];
 

@@ -79,18 +79,25 @@ hn::Vec<D> unit_float(D d, VU bits) {
     return hn::Mul(hn::ConvertTo(d, hn::BitCast(di, hn::ShiftRight<8>(bits))), hn::Set(d, 0x1p-24f));
 }
 
-// The pair of numbers of a sample: `key` is a hash of pixel and seed, `pair` counts the pairs of dimensions.
+// As below, for a sample of each lane, whose number is given with its bits reversed.
 template <class D, class VU>
-void sobol_pair(D d, VU key, uint32_t sample, uint32_t pair, hn::Vec<D>& u, hn::Vec<D>& v) {
+void sobol_pair_of(D d, VU key, VU reversed, uint32_t pair, hn::Vec<D>& u, hn::Vec<D>& v) {
     const hn::RebindToUnsigned<D> du;
     const VU seed = mix_bits(du, hn::Xor(key, hn::Set(du, pair * 0x9E3779B9u + 0x7F4A7C15u)));
     const VU seed_u = hn::Xor(hn::Mul(seed, hn::Set(du, 0x2C1B3C6Du)), hn::Set(du, 0x297A2D39u));
     const VU seed_v = hn::Xor(hn::Mul(seed, hn::Set(du, 0x9E3779B1u)), hn::Set(du, 0x1B56C4E9u));
-    uint32_t reversed = 0;  // of the sample's index, the same for all lanes
-    for (int bit = 0; bit < 32; ++bit) reversed |= ((sample >> bit) & 1u) << (31 - bit);
-    const VU index = reverse_bits(du, laine_karras(du, hn::Set(du, reversed), seed));
+    const VU index = reverse_bits(du, laine_karras(du, reversed, seed));
     u = unit_float(d, reverse_bits(du, laine_karras(du, index, seed_u)));
     v = unit_float(d, reverse_bits(du, laine_karras(du, pascal(du, index), seed_v)));
+}
+
+// The pair of numbers of a sample: `key` is a hash of pixel and seed, `pair` counts the pairs of dimensions.
+template <class D, class VU>
+void sobol_pair(D d, VU key, uint32_t sample, uint32_t pair, hn::Vec<D>& u, hn::Vec<D>& v) {
+    const hn::RebindToUnsigned<D> du;
+    uint32_t reversed = 0;
+    for (int bit = 0; bit < 32; ++bit) reversed |= ((sample >> bit) & 1u) << (31 - bit);
+    sobol_pair_of(d, key, hn::Set(du, reversed), pair, u, v);
 }
 
 }  // namespace trp::HWY_NAMESPACE

@@ -92,12 +92,18 @@ void apply_material_extras(const Fields& extras, TextureLoader& textures, size_t
     for (const Entry& entry : entries) {
         read_coefficient(extras, entry.key, entry.scalar, nodes.size(), *entry.coefficient, warnings);
     }
+    // What the PBR fields made of mirrors goes with the coefficients that stand in their place.
+    if (extras.has("specular")) desc.mirror_is_specular = 1;
+    if (extras.has("specular") || extras.has("mirror") || extras.has("transmission")) desc.fresnel = 0;
     if (read_coefficient(extras, "ambient", false, nodes.size(), desc.ambient, warnings)) desc.ambient_is_diffuse = 0;
     if (read_coefficient(extras, "mirror", false, nodes.size(), desc.mirror, warnings)) desc.mirror_is_specular = 0;
     extras.read_index("normal", desc.normal, nodes.size(), true);
     extras.read("thin", desc.thin);
     extras.read("double_sided", desc.double_sided);
     extras.read("index", desc.index);
+    extras.read("fresnel", desc.fresnel);
+    extras.read("priority", desc.priority);
+    extras.read("absorption", desc.absorption, 3, 3);
     extras.warn_unknown(warnings);
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace triptych::cli {
 namespace {
@@ -204,8 +205,18 @@ void PbrMaterial::translate(const tinygltf::Material& material, bool vertex_colo
         desc.thin = thickness > 0.0f ? 0 : 1;
         // A ray inside a solid must meet its surface from behind.
         desc.double_sided = 1;
-        if (volume.has("attenuationDistance") || volume.has("attenuationColor")) {
-            warnings_.add(where_ + ".extensions.KHR_materials_volume: attenuation is not rendered yet");
+        // color = exp(-absorption distance)
+        float distance = std::numeric_limits<float>::infinity();
+        float color[3] = {1.0f, 1.0f, 1.0f};
+        volume.read("attenuationDistance", distance);
+        volume.read("attenuationColor", color, 3, 3);
+        for (int c = 0; c < 3 && thickness > 0.0f && distance > 0.0f; ++c) {
+            desc.absorption[c] = std::max(-std::log(std::max(color[c], 1e-30f)) / distance, 0.0f);
+        }
+        // Of a metal, K_S is its colour at every angle.
+        if (pbr.metallicFactor == 0.0) {
+            desc.fresnel = 1;
+            desc.mirror = program_.coefficient(Expression::of(1.0f));
         }
     }
 

@@ -7,7 +7,7 @@
 namespace trp {
 
 // The methods that see surfaces, for the tables of passes and settings; the others draw edges.
-inline constexpr char kSurfaceMethods[] = "visible_surface flat gouraud phong ray_casting";
+inline constexpr char kSurfaceMethods[] = "visible_surface flat gouraud phong ray_casting ray_tracing";
 
 enum PassId : uint32_t {
     kCombined,

@@ -23,16 +23,32 @@ void random_pair_lanes(uint32_t block_x, uint32_t block_y, uint32_t seed, uint32
     }
 }
 
+void random_pair_of_lanes(const uint32_t* keys, const uint32_t* samples, uint32_t pair, float* u, float* v) {
+    const hn::ScalableTag<float> d;
+    const hn::RebindToUnsigned<decltype(d)> du;
+    for (int i = 0; i < kBatch; i += static_cast<int>(hn::Lanes(d))) {
+        auto a = hn::Zero(d), b = hn::Zero(d);
+        sobol_pair_of(d, hn::Load(du, keys + i), reverse_bits(du, hn::Load(du, samples + i)), pair, a, b);
+        hn::Store(a, d, u + i);
+        hn::Store(b, d, v + i);
+    }
+}
+
 }  // namespace trp::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace trp {
 HWY_EXPORT(random_pair_lanes);
+HWY_EXPORT(random_pair_of_lanes);
 
 void random_pair(uint32_t block_x, uint32_t block_y, uint32_t seed, uint32_t sample, uint32_t pair, float* u,
                  float* v) {
     HWY_DYNAMIC_DISPATCH(random_pair_lanes)(block_x, block_y, seed, sample, pair, u, v);
+}
+
+void random_pair_of(const uint32_t* keys, const uint32_t* samples, uint32_t pair, float* u, float* v) {
+    HWY_DYNAMIC_DISPATCH(random_pair_of_lanes)(keys, samples, pair, u, v);
 }
 
 }  // namespace trp

@@ -20,6 +20,7 @@ const char* const kLineColors[] = {"line", "object", "material", nullptr};
 const char* const kHidden[] = {"none", "faint", "dashed", nullptr};
 
 constexpr const char kLineMethods[] = "wireframe hidden_line";
+constexpr const char kTreeMethods[] = "ray_tracing";
 
 Vec3 color_of(const double* v) {
     return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
@@ -85,6 +86,20 @@ const SettingRow kSettings[] = {
      "do it, down the sides of the polygon and along scan lines on the film, which changes as the picture turns",
      "", "perspective", 0, 0, kInterpolations, "gouraud phong", "",
      [](Settings& s, const double* v) { s.scan_line = *v != 0; }},
+    {TRP_TYPE_INT, "trace.depth", "Depth",
+     "The greatest number of reflections and transmissions in a row along a ray; 0 traces none", "", "8", 0, 10000,
+     nullptr, kTreeMethods, "", [](Settings& s, const double* v) { s.trace.depth = static_cast<uint32_t>(*v); }},
+    {TRP_TYPE_INT, "trace.reflection_depth", "Reflections", "The greatest number of reflections along a ray", "", "8",
+     0, 10000, nullptr, kTreeMethods, "",
+     [](Settings& s, const double* v) { s.trace.reflections = static_cast<uint32_t>(*v); }},
+    {TRP_TYPE_INT, "trace.transmission_depth", "Transmissions",
+     "The greatest number of transmissions along a ray; a glass body takes two", "", "8", 0, 10000, nullptr,
+     kTreeMethods, "", [](Settings& s, const double* v) { s.trace.transmissions = static_cast<uint32_t>(*v); }},
+    {TRP_TYPE_FLOAT, "trace.least_weight", "Least weight",
+     "Rays that count for less than this share in their pixel are not traced; each takes at most this share of what it "
+     "would have seen from the pixel. 0 traces all",
+     "", "0.001", 0, 1, nullptr, kTreeMethods, "",
+     [](Settings& s, const double* v) { s.trace.least_weight = static_cast<float>(*v); }},
     {TRP_TYPE_FLOAT, "lines.width", "Width", "Width of the lines", "pixels", "1.5", 0.01, 64, nullptr, kLineMethods, "",
      [](Settings& s, const double* v) { s.lines.width = static_cast<float>(*v); }},
     {TRP_TYPE_ENUM, "lines.color_by", "Colour by",

@@ -21,6 +21,12 @@ struct LineSettings {
     float crease_angle = 0.5235988f;  // radians
 };
 
+// Where the ray tree ends.
+struct TraceLimits {
+    uint32_t depth = 8, reflections = 8, transmissions = 8;
+    float least_weight = 0.001f;  // of a ray in its pixel
+};
+
 struct Settings {
     uint32_t samples = 16;
     uint32_t seed = 0;
@@ -41,6 +47,7 @@ struct Settings {
     uint32_t tile_size = 64;
     uint32_t raster_samples = 8;
     LineSettings lines;
+    TraceLimits trace;
 };
 
 struct SettingRow {

@@ -21,17 +21,18 @@ void add_radiance_lanes(const SeenSurfaces& seen, const BlockSums& sums, float* 
     const hn::RebindToUnsigned<decltype(d)> du;
     using V = hn::Vec<decltype(d)>;
     const std::array<float*, 4> rgba = sums.combined();
+    const bool transmits = seen.straight && seen.points.any_transmission;
     const V one = hn::Set(d, 1.0f), third = hn::Set(d, 1.0f / 3);
     for (int i = 0; i < kBatch; i += static_cast<int>(hn::Lanes(d))) {
         const auto sees = hn::Ne(hn::Load(du, seen.points.slot + i), hn::Set(du, kNoSlot));
         const V alpha = hn::IfThenElseZero(hn::RebindMask(d, sees), hn::Load(d, seen.coefficients.alpha + i));
         V weight = alpha;
-        if (seen.throughput || seen.points.any_transmission) weight = hn::Zero(d);
+        if (seen.throughput || transmits) weight = hn::Zero(d);
         for (int c = 0; c < 3; ++c) {
             const V share = seen.throughput ? hn::Mul(alpha, hn::Load(d, (*seen.throughput)[c] + i)) : alpha;
             const V radiance = hn::IfThenElseZero(hn::Gt(share, hn::Zero(d)), hn::Load(d, seen.radiance[c] + i));
             hn::Store(hn::MulAdd(share, radiance, hn::Load(d, rgba[c] + i)), d, rgba[c] + i);
-            if (seen.points.any_transmission) {
+            if (transmits) {
                 const V ends = hn::Mul(share, hn::Sub(one, hn::Load(d, seen.coefficients.transmission[c] + i)));
                 weight = hn::MulAdd(ends, third, weight);
             } else if (seen.throughput) {

@@ -16,6 +16,7 @@ struct SeenSurfaces {
     const LaneVec3& radiance;       // 0 where a lane sees nothing
     const LaneVec3* throughput;     // of the surfaces before; null: there is none
     const ArrivingLight* arriving;  // null: all light arrives, or the Shadow pass was not asked for
+    bool straight = true;           // K_T lets what lies straight behind shine through; false: rays are traced for it
 };
 
 // Adds the lanes that see a surface. `first`: null, or in the first sample, whether a lane has its values of passes

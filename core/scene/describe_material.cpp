@@ -77,6 +77,12 @@ Material describe(const TrpMaterialDesc& desc, uint32_t id) {
     material.thin = desc.thin;
     material.double_sided = desc.double_sided;
     material.index = desc.index;
+    material.fresnel = desc.fresnel;
+    material.priority = desc.priority;
+    for (int k = 0; k < 3; ++k) {
+        check_range(what, fmt::format("absorption[{}]", k).c_str(), desc.absorption[k], 0, kGreatest);
+        material.absorption[k] = desc.absorption[k];
+    }
     return material;
 }
 

@@ -48,8 +48,9 @@ struct Material {
     std::vector<Node> nodes;
     Coefficient emission, ambient, diffuse, specular, shininess, mirror, transmission, ior, alpha;
     int32_t normal = TRP_NO_NODE;
-    bool thin = false, double_sided = true;
-    int32_t index = 0;
+    bool thin = false, double_sided = true, fresnel = false;
+    int32_t index = 0, priority = 0;
+    Vec3 absorption{0, 0, 0};  // 1/m
 };
 
 struct Light {

@@ -10,9 +10,8 @@ void sample_background(const Snapshot& snapshot, const LaneVec3& directions, con
                        LaneVec3& radiance) {
     constexpr float kPi = std::numbers::pi_v<float>;
     const World& world = snapshot.world;
-    const Vec3 constant = world.visible_camera ? world.radiance : Vec3(0, 0, 0);
-    for (int i = 0; i < kBatch; ++i) radiance.set(i, constant);
-    if (world.texture == TRP_NO_ID || constant == Vec3(0, 0, 0)) return;
+    for (int i = 0; i < kBatch; ++i) radiance.set(i, world.radiance);
+    if (world.texture == TRP_NO_ID || world.radiance == Vec3(0, 0, 0)) return;
 
     const auto it = snapshot.textures.find(world.texture);
     const OpenTexture* texture = it == snapshot.textures.end() ? nullptr : it->second.get();

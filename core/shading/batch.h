@@ -45,6 +45,7 @@ struct Points {
     bool any_program = false;               // a lane's material has nodes
     bool any_holes = false;                 // a lane's material may have alpha below 1, or one side
     bool any_transmission = false;          // a lane's material transmits
+    bool any_mirror = false;                // a lane's material mirrors
 
     // The footprint, by the visibility method after locate(): the change of b1 and b2 by one pixel to the right and one
     // pixel up, in the plane of the triangle. Needed where textures are (Snapshot::needs_footprint), else unset.
@@ -57,8 +58,8 @@ struct Points {
 struct Coefficients {
     LaneVec3 emission, ambient, diffuse, specular;
     alignas(64) Lanes shininess, alpha;
-    LaneVec3 mirror, transmission;  // transmission: where Points::any_transmission
-    alignas(64) Lanes ior;
+    LaneVec3 mirror, transmission;  // where Points::any_mirror; any_transmission
+    alignas(64) Lanes ior;          // where one of both
 };
 
 // Light that would arrive at each point from one light, if nothing were in between.

@@ -25,7 +25,7 @@ void add_ambient_lanes(const Points& points, const Coefficients& coefficients, c
     }
 }
 
-void add_light_lanes(Specular specular, const Points& points, const Coefficients& coefficients,
+void add_light_lanes(Specular specular, const Points& points, const Coefficients& coefficients, const LaneVec3& weight,
                      const LightSamples& samples, const float* visibility, LaneVec3& radiance,
                      ArrivingLight* arriving) {
     const hn::ScalableTag<float> d;
@@ -42,8 +42,8 @@ void add_light_lanes(Specular specular, const Points& points, const Coefficients
         const V s = hn::IfThenElseZero(lit, hn::Load(d, visibility + i));
         for (int c = 0; c < 3; ++c) {
             const V light = hn::IfThenElseZero(lit, hn::Load(d, samples.light[c] + i));
-            const V term = light_term(hn::Load(d, coefficients.diffuse[c] + i), n_dot_l,
-                                      hn::Load(d, coefficients.specular[c] + i), shine, hn::Mul(light, s));
+            const V term = light_term(hn::Load(d, coefficients.diffuse[c] + i), n_dot_l, hn::Load(d, weight[c] + i),
+                                      shine, hn::Mul(light, s));
             hn::Store(hn::Add(hn::Load(d, radiance[c] + i), term), d, radiance[c] + i);
             if (!arriving) continue;
             const V unblocked = hn::Mul(light, n_dot_l);
@@ -77,6 +77,8 @@ void gather_constants(const float* rows, size_t stride, const Points& points, Co
         for (const auto& color : colors)
             for (int c = 0; c < 3; ++c) fill(color.row + c, (*color.value)[c]);
         for (int c = 0; c < 3 && points.any_transmission; ++c) fill(kTransmission + c, coefficients.transmission[c]);
+        for (int c = 0; c < 3 && points.any_mirror; ++c) fill(kMirror + c, coefficients.mirror[c]);
+        if (points.any_transmission || points.any_mirror) fill(kIor, coefficients.ior);
         fill(kShininess, coefficients.shininess);
         fill(kAlpha, coefficients.alpha);
     }
@@ -96,9 +98,10 @@ void add_ambient(const Points& points, const Coefficients& coefficients, const V
     HWY_DYNAMIC_DISPATCH(add_ambient_lanes)(points, coefficients, ambient_light, radiance);
 }
 
-void add_light(Specular specular, const Points& points, const Coefficients& coefficients, const LightSamples& samples,
-               const float* visibility, LaneVec3& radiance, ArrivingLight* arriving) {
-    HWY_DYNAMIC_DISPATCH(add_light_lanes)(specular, points, coefficients, samples, visibility, radiance, arriving);
+void add_light(Specular specular, const Points& points, const Coefficients& coefficients, const LaneVec3& weight,
+               const LightSamples& samples, const float* visibility, LaneVec3& radiance, ArrivingLight* arriving) {
+    HWY_DYNAMIC_DISPATCH(add_light_lanes)
+    (specular, points, coefficients, weight, samples, visibility, radiance, arriving);
 }
 
 void evaluate(const Snapshot& snapshot, Points& points, Coefficients& coefficients, ProgramScratch& scratch) {

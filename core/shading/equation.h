@@ -28,7 +28,8 @@ void evaluate(const Snapshot& snapshot, Points& points, Coefficients& coefficien
 // radiance = I_E + K_A I_A
 void add_ambient(const Points& points, const Coefficients& coefficients, const Vec3& ambient_light, LaneVec3& radiance);
 
-// radiance += (K_D (N·L) + K_S (V·R)^n) S_L I_L; `visibility` is S_L, a fraction where the way is partly blocked.
+// radiance += (K_D (N·L) + K_S (V·R)^n) S_L I_L; `weight` is K_S, `visibility` S_L, a fraction where the way is partly
+// blocked.
 // Where `arriving` is given, it gains luminance-free sums of (N·L) I_L, unblocked and blocked, for the shadow pass.
 struct ArrivingLight {
     LaneVec3 unblocked, blocked;
@@ -36,7 +37,7 @@ struct ArrivingLight {
         for (int c = 0; c < 3; ++c) std::fill_n(unblocked[c], kBatch, 0.0f), std::fill_n(blocked[c], kBatch, 0.0f);
     }
 };
-void add_light(Specular specular, const Points& points, const Coefficients& coefficients, const LightSamples& samples,
-               const float* visibility, LaneVec3& radiance, ArrivingLight* arriving);
+void add_light(Specular specular, const Points& points, const Coefficients& coefficients, const LaneVec3& weight,
+               const LightSamples& samples, const float* visibility, LaneVec3& radiance, ArrivingLight* arriving);
 
 }  // namespace trp

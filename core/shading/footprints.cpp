@@ -28,15 +28,15 @@ void make_footprint_lanes(const FootprintRays& rays, Points& points) {
         const auto steep = hn::Gt(hn::Abs(slope), hn::Set(d, 1e-8f));
         const V along = hn::IfThenElseZero(steep, hn::Div(one, slope));
         const V depth = rays.perspective ? hn::Load(d, points.depth + i) : one;
-        auto footprint = [&](const Vec3& step, float* b1, float* b2) {
+        auto footprint = [&](int k, const Vec3& step, float* b1, float* b2) {
             // The neighbour's ray moves by `across` at this depth, and on along its direction to the plane again.
-            const Vector3<V> across = broadcast(d, step) * depth;
+            const Vector3<V> across = rays.steps ? load3(d, rays.steps[k], i) : broadcast(d, step) * depth;
             const Vector3<V> moved = across - direction * hn::Mul(dot3(n, across), along);
             hn::Store(dot3(gradient1, moved), d, b1 + i);
             hn::Store(dot3(gradient2, moved), d, b2 + i);
         };
-        footprint(rays.step_x, points.b1_dx, points.b2_dx);
-        footprint(rays.step_y, points.b1_dy, points.b2_dy);
+        footprint(0, rays.step_x, points.b1_dx, points.b2_dx);
+        footprint(1, rays.step_y, points.b1_dy, points.b2_dy);
     }
 }
 

@@ -10,6 +10,7 @@ struct FootprintRays {
     const LaneVec3& direction;
     bool perspective = true;
     Vec3 step_x, step_y;  // from a ray to that of the pixel's right and upper end, at depth 1; orthographic: anywhere
+    const LaneVec3* steps = nullptr;  // two, lane by lane, at what is seen, in their stead
 };
 
 // Points::b1_dx … from what locate() has found.

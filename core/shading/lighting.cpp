@@ -9,6 +9,10 @@ namespace trp {
 void add_lights(const Snapshot& snapshot, const Illumination& illumination, Coherence coherence,
                 const RandomPairs& random, const Points& points, const Coefficients& coefficients, LaneVec3& radiance,
                 ArrivingLight* arriving, LightScratch& scratch, ProgramScratch& program, ShadowCounts& counts) {
+    const bool any_mirror = illumination.mirrors && points.any_mirror;
+    for (int i = 0; i < kBatch && any_mirror; ++i)
+        scratch.weight.set(i,
+                           coefficients.mirror.get(i) == Vec3(0, 0, 0) ? coefficients.specular.get(i) : Vec3(0, 0, 0));
     for (size_t l = 0; l < snapshot.lights.size(); ++l) {
         const ReadyLight& light = snapshot.lights[l];
         const bool is_world = light.kind == ReadyLight::Kind::world || light.kind == ReadyLight::Kind::world_map;
@@ -24,7 +28,8 @@ void add_lights(const Snapshot& snapshot, const Illumination& illumination, Cohe
             std::fill_n(scratch.visibility, kBatch, 1.0f);
         }
         // The highlight stands for lights that have a place; the world shows in mirrors.
-        add_light(is_world ? Specular::none : illumination.specular, points, coefficients, scratch.samples,
+        add_light(is_world ? Specular::none : illumination.specular, points, coefficients,
+                  any_mirror && light.is_hit_by_rays() ? scratch.weight : coefficients.specular, scratch.samples,
                   scratch.visibility, radiance, arriving);
     }
 }

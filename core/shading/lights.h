@@ -58,6 +58,7 @@ struct ReadyLight {
     std::shared_ptr<const WorldMap> map;
     Affine texture_from_world;  // a rotation
 
+    bool is_hit_by_rays() const { return kind == Kind::area || kind == Kind::surface; }
     // Whether two numbers of the random sequence are used.
     bool is_sampled() const {
         return !((kind == Kind::point || kind == Kind::spot) && radius == 0) &&

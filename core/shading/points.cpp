@@ -188,6 +188,7 @@ void locate_lanes(const Snapshot& snapshot, NormalChoice choice, Side seen_side,
     points.any_program = flags & kHasProgram;
     points.any_holes = flags & kMayHaveHoles;
     points.any_transmission = flags & kTransmits;
+    points.any_mirror = flags & kMirrors;
 }
 
 }  // namespace trp::HWY_NAMESPACE

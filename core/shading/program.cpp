@@ -212,6 +212,9 @@ CompiledMaterial compile(const Material& material, const TextureSet& textures) {
     out.index = material.index;
     out.thin = material.thin;
     out.double_sided = material.double_sided;
+    out.fresnel = material.fresnel;
+    out.priority = material.priority;
+    out.absorption = material.absorption;
 
     // Fold: node i is either a constant or an instruction.
     const size_t count = material.nodes.size();
@@ -322,7 +325,10 @@ CompiledMaterial compile(const Material& material, const TextureSet& textures) {
     if (out.normal != TRP_NO_NODE) out.normal = kept[out.normal];
 
     out.emits = out.constants[kEmission] > 0 || out.constants[kEmission + 1] > 0 || out.constants[kEmission + 2] > 0;
-    for (int c = 0; c < 3; ++c) out.transmits |= out.constants[kTransmission + c] > 0;
+    for (int c = 0; c < 3; ++c) {
+        out.transmits |= out.constants[kTransmission + c] > 0;
+        out.mirrors |= out.constants[kMirror + c] > 0;
+    }
     out.has_holes = out.constants[kAlpha] < 1 ||
                     std::any_of(out.outputs.begin(), out.outputs.end(), [](const auto& o) { return o.row == kAlpha; });
     return out;

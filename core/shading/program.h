@@ -48,12 +48,17 @@ struct CompiledMaterial {
     std::vector<Output> outputs;
     int32_t normal = TRP_NO_NODE;
     int32_t index = 0;
-    bool thin = false, double_sided = true;
+    bool thin = false, double_sided = true, fresnel = false;
+    int32_t priority = 0;
+    Vec3 absorption{0, 0, 0};
     bool emits = false;      // its emission is not 0
     bool has_holes = false;  // alpha may be below 1
     bool transmits = false;  // its transmission is not 0
+    bool mirrors = false;    // its mirror coefficient is not 0
 
     bool has_program() const { return !instructions.empty(); }
+    // Rays are refracted into it, and are in it until they leave.
+    bool is_solid() const { return transmits && !thin; }
     bool needs_footprint() const;
 };
 

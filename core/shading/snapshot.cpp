@@ -75,7 +75,7 @@ void make_materials(const Scene& scene, Snapshot& snapshot, const Snapshot* prev
         snapshot.material_flags.push_back(
             static_cast<uint8_t>((material.has_program() ? kHasProgram : 0) |
                                  (material.has_holes || !material.double_sided ? kMayHaveHoles : 0) |
-                                 (material.transmits ? kTransmits : 0)));
+                                 (material.transmits ? kTransmits : 0) | (material.mirrors ? kMirrors : 0)));
         snapshot.needs_footprint |= material.needs_footprint();
         snapshot.seen_through |= (snapshot.material_flags.back() & (kMayHaveHoles | kTransmits)) != 0;
     }

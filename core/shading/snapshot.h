@@ -49,6 +49,7 @@ enum MaterialFlag : uint8_t {
     kHasProgram = 1,
     kMayHaveHoles = 2,  // alpha below 1, or one side
     kTransmits = 4,
+    kMirrors = 8,
 };
 
 struct Snapshot {
@@ -77,7 +78,7 @@ struct Snapshot {
 // where nobody else holds it. Throws Error with `previous` as it was.
 std::shared_ptr<const Snapshot> make_snapshot(const Scene& scene, std::shared_ptr<const Snapshot>& previous);
 
-// Background radiance in directions (of any length), as the camera sees it; for lanes that are `wanted`.
+// Background radiance in directions (of any length), for lanes that are `wanted`.
 void sample_background(const Snapshot& snapshot, const LaneVec3& directions, const uint8_t* wanted, LaneVec3& radiance);
 
 }  // namespace trp

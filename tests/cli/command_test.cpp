@@ -4,6 +4,7 @@
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <fstream>
 
 #include <algorithm>
 #include <chrono>
@@ -224,6 +225,41 @@ TEST_F(Command, PickShowsTheScanLineOfAPixel) {
         run({"pick", scene, "--pixel", "32,16", "--width", "64", "--height", "32", "--method", "phong"});
     EXPECT_NE(text.out.find("normals interpolated over face"), std::string::npos);
     expect_error(run({"pick", scene, "--pixel", "0,0", "--method", "flat", "--quiet"}), 2, "gouraud and phong");
+}
+
+TEST_F(Command, RayTreeShowsThePixel) {
+    const Square square;
+    GltfBuilder builder;
+    builder.add("materials", {{"extras", {{"triptych", {{"specular", 0.04}}}}}});
+    builder.add_mesh_node({{"attributes", {{"POSITION", builder.accessor(square.positions, float_type, "VEC3")}}},
+                           {"indices", builder.accessor(square.indices, ushort_type, "SCALAR")},
+                           {"material", 0}});
+    scene = builder.write(folder, "scene.glb").string();
+    const std::string svg = (folder / "tree.svg").string();
+    const Outcome outcome = run({"ray-tree", scene, "--pixel", "32,16", "--width", "64", "--height", "32", "--json",
+                                 "--quiet", "--svg", svg, "--set", "trace.depth=2"});
+    ASSERT_EQ(outcome.code, 0) << outcome.error;
+    const json root = json::parse(outcome.out);
+    EXPECT_EQ(root["kind"], "primary");
+    EXPECT_EQ(root["end"], "surface");
+    ASSERT_EQ(root["children"].size(), 1u) << "what is mirrored";
+    const json& child = root["children"][0];
+    EXPECT_EQ(child["kind"], "reflection");
+    EXPECT_EQ(child["end"], "background");
+    for (size_t c = 0; c < 3; ++c) {
+        const double sum = double{root["local"][c]} + double{child["weight"][c]} * double{child["intensity"][c]};
+        EXPECT_NEAR(root["intensity"][c], sum, 1e-6);
+    }
+    std::ifstream stream(svg);
+    const std::string drawing((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+    for (const char* word : {"<svg", "I_pixel", "I_back", "R 0.04", "</svg>"})
+        EXPECT_NE(drawing.find(word), std::string::npos) << word;
+    const Outcome text = run({"ray-tree", scene, "--pixel", "32,16", "--width", "64", "--height", "32"});
+    EXPECT_NE(text.out.find("reflection to background"), std::string::npos);
+    expect_error(run({"ray-tree", scene, "--pixel", "64,3", "--width", "64", "--height", "32"}), 2,
+                 "outside the picture");
+    expect_error(run({"ray-tree", scene, "--pixel", "1,1", "--svg", (folder / "no/tree.svg").string()}), 1,
+                 "no folder");
 }
 
 TEST_F(Command, Tables) {

@@ -156,8 +156,29 @@ TEST(Material, Extensions) {
     expect_color(evaluate(material, material.desc.emission), 4, 2, 0);
     EXPECT_EQ(material.desc.thin, 0);
     EXPECT_EQ(material.desc.double_sided, 1);
-    EXPECT_TRUE(loaded.warns("attenuation is not rendered yet"));
+    EXPECT_EQ(material.desc.fresnel, 1);
+    EXPECT_FLOAT_EQ(material.desc.mirror.value[0], 1);
+    EXPECT_EQ(material.desc.absorption[0], 0) << "no colour: clear at every distance";
     EXPECT_FALSE(loaded.scene.needs_light) << "what emits is a light";
+}
+
+// Coefficients of extras stand for those that the PBR fields make, with what belongs to them.
+TEST(Material, ExtrasReplaceMirrorsOfPbr) {
+    MaterialScene builder(
+        {{"extras", {{"triptych", {{"specular", {0.3, 0.2, 0.1}}, {"transmission", 0.5}}}}},
+         {"pbrMetallicRoughness", {{"metallicFactor", 0}}},
+         {"extensions",
+          {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+           {"KHR_materials_volume",
+            {{"thicknessFactor", 1}, {"attenuationDistance", 2}, {"attenuationColor", {0.5, 1, 0.25}}}}}}},
+        false);
+    const Loaded loaded = load(builder);
+    const TrpMaterialDesc& desc = loaded->materials[0].desc;
+    EXPECT_EQ(desc.mirror_is_specular, 1);
+    EXPECT_EQ(desc.fresnel, 0);
+    EXPECT_NEAR(desc.absorption[0], -std::log(0.5) / 2, 1e-6) << "half of the light is left after two metres";
+    EXPECT_EQ(desc.absorption[1], 0);
+    EXPECT_NEAR(desc.absorption[2], -std::log(0.25) / 2, 1e-6);
 }
 
 TEST(Material, ThinWithoutVolumeAndUnlit) {

@@ -86,7 +86,7 @@ void build(Scene& scene, const Options& o) {
 
 constexpr uint32_t kWidth = 150, kHeight = 100;
 const char* const kMethods[] = {"ray_casting", "wireframe", "hidden_line", "visible_surface",
-                                "flat",        "gouraud",   "phong"};
+                                "flat",        "gouraud",   "phong",       "ray_tracing"};
 
 Image picture(const Options& o, const Settings& settings) {
     Scene scene;

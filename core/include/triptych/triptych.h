@@ -306,7 +306,7 @@ typedef struct TrpMaterialDesc {
     TrpCoefficient specular;     /* K_S; default 0 */
     TrpCoefficient shininess;    /* n, Phong's exponent, ≥ 0; scalar; default 30 */
     TrpCoefficient mirror;       /* the weight of I_R; default: as specular (see mirror_is_specular) */
-    TrpCoefficient transmission; /* K_T; default 0 */
+    TrpCoefficient transmission; /* K_T, the weight of I_T, which goes to I_R where light is totally reflected; default 0 */
     TrpCoefficient ior;          /* η, scalar, > 0; default 1.5 */
     TrpCoefficient alpha;        /* coverage: 0 invisible, 1 opaque; scalar; default 1 */
     int32_t normal;              /* a node that gives a world-space normal (NORMAL_MAP), or TRP_NO_NODE */
@@ -315,6 +315,9 @@ typedef struct TrpMaterialDesc {
     int32_t thin;                /* transmitted rays go straight on; default 0 */
     int32_t double_sided;        /* 0: not seen, and not emitting, from behind; shadows are cast by both sides; default 1 */
     int32_t index;               /* the number in the material index pass; default 0 */
+    int32_t fresnel;             /* 1: I_R is also weighed by Fresnel's reflectance R of η, I_T by 1 − R; default 0 */
+    int32_t priority;            /* of solids that lie in each other: the greater one fills the space; default 0 */
+    float absorption[3];         /* of solids: light fades as exp(−absorption · distance), 1/m; default 0 */
 } TrpMaterialDesc;
 TRP_API TrpStatus trp_material_desc_init(TrpMaterialDesc* desc, size_t struct_size);
 TRP_API TrpStatus trp_material_add(TrpScene* scene, const TrpMaterialDesc* desc, uint32_t* id);
@@ -521,6 +524,34 @@ typedef struct TrpScanLine {
 /* x and y are a pixel of the picture, from the bottom left; the settings are those of the render, which need not have
  * run, but must not be running. TRP_ERROR_STATE for other methods than gouraud and phong. */
 TRP_API TrpStatus trp_render_pick_scan_line(const TrpRender* render, uint32_t x, uint32_t y, TrpScanLine* scan_line);
+
+enum { TRP_RAY_PRIMARY = 0, TRP_RAY_REFLECTION = 1, TRP_RAY_TRANSMISSION = 2 };
+enum {
+    TRP_END_SURFACE = 0,
+    TRP_END_LIGHT = 1,      /* an area light */
+    TRP_END_BACKGROUND = 2, /* the world */
+    TRP_END_DEPTH = 3,      /* not traced, as the settings limit the depth of the tree */
+    TRP_END_WEIGHT = 4      /* not traced, as it counts for less than trace.least_weight */
+};
+#define TRP_NO_PARENT 0xFFFFFFFFu
+/* A ray of a pixel's tree. intensity = local + the sum of its children's weight times intensity. World space. */
+typedef struct TrpRay {
+    uint32_t struct_size;
+    int32_t kind, end;     /* TRP_RAY_…, TRP_END_… */
+    uint32_t parent;       /* its place in the list, before this one; TRP_NO_PARENT: the primary ray */
+    const char* object;    /* name of the mesh where it ends at a surface, else ""; both are the render's, until it is */
+    const char* material;  /* destroyed */
+    uint32_t instance;     /* id of the object, or TRP_NO_ID */
+    float origin[3], direction[3], distance;
+    float position[3], normal[3];            /* where it ends at a surface: the shading normal on the side that is seen */
+    float local[3], weight[3], intensity[3]; /* W/(m² sr); weight: what its parent gives it, with what absorbs it */
+} TrpRay;
+/* Traces the tree of the ray through the centre of a pixel, from the bottom left, with the render's settings; the render
+ * need not have run, but must not be running. `count` becomes the number of its rays, parents before their children.
+ * TRP_ERROR_STATE for other methods than ray_tracing. */
+TRP_API TrpStatus trp_render_trace_tree(TrpRender* render, uint32_t x, uint32_t y, uint32_t* count);
+/* A ray of the last tree. */
+TRP_API TrpStatus trp_render_ray(const TrpRender* render, uint32_t index, TrpRay* ray);
 
 typedef struct TrpStatistics {
     uint32_t struct_size;

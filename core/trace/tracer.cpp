@@ -1,0 +1,342 @@
+#include "trace/tracer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/clock.h"
+#include "film/pixel_random.h"
+#include "shading/footprints.h"
+
+namespace trp {
+namespace {
+
+// What a medium leaves of light over a distance; `filling` as Media::filling() gives it.
+Vec3 fading(const CompiledMaterial* filling, float distance) {
+    if (!filling || filling->absorption == Vec3(0, 0, 0)) return {1, 1, 1};
+    Vec3 out;
+    for (int c = 0; c < 3; ++c) out[c] = filling->absorption[c] > 0 ? std::exp(-filling->absorption[c] * distance) : 1;
+    return out;
+}
+
+}  // namespace
+
+SeenLight Tracer::nearest_light(const Vec3& origin, const Vec3& direction, float from, float to, bool by_camera) const {
+    SeenLight nearest;
+    nearest.t = to;
+    bool any = false;
+    for (const ReadyLight& light : snapshot.lights) {
+        if (light.kind != ReadyLight::Kind::area || (by_camera && !light.visible_camera)) continue;
+        const SeenLight seen = see_area_light(light, origin, direction);
+        if (!(seen.t > from && seen.t < nearest.t)) continue;
+        nearest = seen;
+        any = true;
+    }
+    return any ? nearest : SeenLight{};
+}
+
+void Tracer::record_hit(const PathRay& ray, int i, float distance, TreeWorkspace& w) const {
+    RayNode& node = (*w.tree)[static_cast<size_t>(ray.node)];
+    node.end = RayNode::End::surface;
+    node.distance += distance;
+    node.slot = w.points.slot[i];
+    node.material = w.points.material[i];
+    node.position = w.points.position.get(i);
+    node.normal = w.points.normal.get(i);
+    node.local += w.radiance.get(i) * w.coefficients.alpha[i];
+}
+
+// Area lights that the camera sees, in front of what was hit: a lane that meets one is done.
+void Tracer::add_seen_lights(TreeWorkspace& w) const {
+    const std::array<float*, 4> rgba = w.sums.combined();
+    for (int i = 0; i < kBatch; ++i) {
+        if (!w.active[i]) continue;
+        const RTCRay16& ray = w.primary.packets[i >> 4].ray;
+        const SeenLight seen = nearest_light(w.primary.origin.get(i), w.primary.direction.get(i), ray.tnear[i & 15],
+                                             ray.tfar[i & 15], true);
+        if (seen.t == 0) continue;
+        const Vec3 throughput = w.throughput.get(i);
+        for (int c = 0; c < 3; ++c) rgba[c][i] += throughput[c] * seen.radiance[c];
+        rgba[3][i] += throughput.x;
+        w.sums.add(kShadow, i, throughput);
+        if (w.tree) {
+            RayNode& root = w.tree->front();
+            root.end = RayNode::End::light;
+            root.distance = seen.t;
+            root.local += seen.radiance * throughput;
+        }
+        w.active[i] = 0;
+        w.points.slot[i] = kNoSlot;
+    }
+}
+
+// What absorbs primary rays since the layer before.
+void Tracer::fade_primary(TreeWorkspace& w) const {
+    for (int i = 0; i < kBatch; ++i) {
+        if (!w.active[i]) continue;
+        const float reached = w.points.slot[i] == kNoSlot ? std::numeric_limits<float>::infinity()
+                                                          : w.points.depth[i] * w.primary.direction.get(i).length();
+        const Vec3 faded = fading(w.media.filling(w.media_of[i]), reached - w.travelled[i]);
+        w.throughput.set(i, w.throughput.get(i) * faded);
+        w.travelled[i] = reached;
+    }
+}
+
+// One sample of all pixels of a block: the nearest surfaces, and where they have holes, those behind. w.active: the
+// lanes that are wanted.
+void Tracer::primary(uint32_t block_x, uint32_t block_y, uint32_t sample, TreeWorkspace& w) const {
+    auto start = Clock::now();
+    make_primary_rays(maker, block_x, block_y, sample, w.primary);
+    for (int c = 0; c < 3; ++c) std::fill_n(w.throughput[c], kBatch, 1.0f);
+    std::fill_n(w.media_of, kBatch, w.start);
+    std::fill_n(w.travelled, kBatch, 0.0f);
+    const bool starts_inside = w.start != Media::kOutside;
+    uint8_t first[kBatch] = {};
+    uint64_t primary_rays = 0, primary_time = 0;
+    // Packets are whole and their lanes fixed to the film in the first layer alone.
+    Coherence coherence = Coherence::coherent;
+    for (int layer = 0; layer < kGreatestLayers; ++layer) {
+        if (layer > 0) start = Clock::now();
+        primary_rays += static_cast<uint64_t>(std::count(w.active, w.active + kBatch, 1));
+        trace_primary(snapshot.rays->embree(), w.active, coherence, w.primary);
+        read_hits(w.primary, w.active, w.points);
+        if (sees_lights) add_seen_lights(w);
+        primary_time += nanoseconds(start, Clock::now());
+        bool any_missed = false, any_hit = false;
+        for (int i = 0; i < kBatch; ++i) {
+            w.missed[i] = w.active[i] && w.points.slot[i] == kNoSlot;
+            any_missed |= w.missed[i];
+            any_hit |= w.points.slot[i] != kNoSlot;
+        }
+        if (starts_inside) fade_primary(w);
+        const LaneVec3* const throughput = layer > 0 || starts_inside ? &w.throughput : nullptr;
+        if (any_missed) {
+            add_background(snapshot, w.primary.direction, w.missed, throughput, job.settings.transparent, w.sums);
+            if (w.tree && snapshot.world.visible_camera) {
+                sample_background(snapshot, w.primary.direction, w.missed, w.background);
+                for (int i = 0; i < kBatch; ++i)
+                    if (w.missed[i]) w.tree->front().local += w.background.get(i) * w.throughput.get(i);
+            }
+        }
+        if (!any_hit) break;
+        const auto shading = Clock::now();
+        locate(snapshot, job.settings.normals(), w.points);
+        if (snapshot.needs_footprint)
+            make_footprints(
+                {w.primary.direction, maker.view.perspective, maker.view.x * (maker.view.step_x * maker.footprint),
+                 maker.view.y * (maker.view.step_y * maker.footprint)},
+                w.points);
+        shade(
+            coherence,
+            [&](uint32_t pair, float* u, float* v) {
+                random_pair(block_x, block_y, job.settings.seed, sample, pair, u, v);
+            },
+            w);
+        add_surfaces({snapshot, w.points, w.coefficients, w.radiance, throughput,
+                      wants_shadow_pass ? &w.arriving : nullptr, false},
+                     sample == 0 ? first : nullptr, w.sums);
+        const bool bounces = w.points.any_mirror || w.points.any_transmission;
+        for (int i = 0; i < kBatch && (bounces || w.tree); ++i) {
+            if (w.points.slot[i] == kNoSlot) continue;
+            const Vec3 direction = w.primary.direction.get(i);
+            const float length = direction.length(), distance = w.points.depth[i] * length;
+            PathRay ray{w.primary.origin.get(i),
+                        direction / length,
+                        w.throughput.get(i),
+                        w.primary.keys[i],
+                        sample,
+                        w.media_of[i],
+                        0,
+                        static_cast<uint16_t>(i),
+                        0,
+                        0,
+                        0,
+                        maker.view.perspective ? 0 : pixel_step,
+                        maker.view.perspective ? pixel_step / length : 0,
+                        0};
+            if (w.tree) {
+                const Vec3 before = w.tree->front().local;
+                record_hit(ray, i, 0, w);
+                RayNode& root = w.tree->front();
+                root.local = before + (root.local - before) * ray.weight;
+                root.distance = distance;
+            }
+            if (bounces) spawn(i, ray, distance, w);
+        }
+        job.counts->shading_time += nanoseconds(shading, Clock::now()) - w.shadow_time;
+        if (!w.points.any_holes) break;
+
+        bool any_left = false;
+        for (int i = 0; i < kBatch; ++i) {
+            w.active[i] = 0;
+            if (w.points.slot[i] == kNoSlot) continue;
+            const Vec3 left = w.throughput.get(i) * (1 - w.coefficients.alpha[i]);
+            w.throughput.set(i, left);
+            if (std::max({left.x, left.y, left.z}) < 1e-3f) continue;
+            w.active[i] = 1;
+            any_left = true;
+            if (w.coefficients.alpha[i] == 0 && !w.crosses[i]) w.media_of[i] = w.beyond[i];
+            RTCRay16& ray = w.primary.packets[i >> 4].ray;
+            ray.tnear[i & 15] = ray.tfar[i & 15] * (1 + 4e-7f) + 2 * w.points.offset[i];
+            ray.tfar[i & 15] = maker.view.clip_end;
+        }
+        if (!any_left) break;
+        coherence = Coherence::incoherent;
+    }
+    if (sample == 0) finish_depth(first, w.sums);
+    job.counts->primary_rays += primary_rays;
+    job.counts->primary_time += primary_time;
+}
+
+// The last rays of the stack, as many as a batch holds.
+void Tracer::secondary(TreeWorkspace& w) const {
+    const auto start = Clock::now();
+    const auto count = static_cast<int>(std::min<size_t>(w.stack.size(), kBatch));
+    std::copy(w.stack.end() - count, w.stack.end(), w.rays);
+    w.stack.resize(w.stack.size() - static_cast<size_t>(count));
+    for (int i = 0; i < kBatch; ++i) {
+        const PathRay& ray = w.rays[i < count ? i : 0];
+        w.active[i] = i < count;
+        w.keys[i] = ray.key;
+        w.samples[i] = ray.sample;
+        w.media_of[i] = ray.medium;
+        w.secondary.origin.set(i, ray.origin);
+        w.secondary.direction.set(i, ray.direction);
+        RTCRay16& out = w.secondary.packets[i >> 4].ray;
+        const int k = i & 15;
+        out.org_x[k] = ray.origin.x, out.org_y[k] = ray.origin.y, out.org_z[k] = ray.origin.z;
+        out.dir_x[k] = ray.direction.x, out.dir_y[k] = ray.direction.y, out.dir_z[k] = ray.direction.z;
+        out.tnear[k] = 0;
+        out.tfar[k] = std::numeric_limits<float>::infinity();
+    }
+    trace_primary(snapshot.rays->embree(), w.active, Coherence::incoherent, w.secondary);
+    read_hits(w.secondary, w.active, w.points);
+    const auto traced = Clock::now();
+    job.counts->primary_time += nanoseconds(start, traced);
+
+    const std::array<float*, 4> rgba = w.sums.combined();
+    const auto gain = [&](const PathRay& ray, const Vec3& value) {
+        for (int c = 0; c < 3; ++c) rgba[c][ray.lane] += ray.weight[c] * value[c];
+    };
+    bool any_missed = false, any_hit = false;
+    for (int i = 0; i < count; ++i) {
+        PathRay& ray = w.rays[i];
+        float distance = w.points.slot[i] == kNoSlot ? std::numeric_limits<float>::infinity() : w.points.depth[i];
+        SeenLight light;
+        if (any_area_lights) light = nearest_light(ray.origin, ray.direction, 0, distance, false);
+        if (light.t > 0) distance = light.t;
+        const Vec3 faded = fading(w.media.filling(ray.medium), distance + ray.skipped);
+        ray.weight = ray.weight * faded;
+        if (w.tree) {
+            RayNode& node = (*w.tree)[static_cast<size_t>(ray.node)];
+            node.weight = node.weight * faded;
+        }
+        if (light.t > 0) {
+            gain(ray, light.radiance);
+            w.points.slot[i] = kNoSlot;
+            w.active[i] = 0;
+            if (!w.tree) continue;
+            RayNode& node = (*w.tree)[static_cast<size_t>(ray.node)];
+            node.end = RayNode::End::light;
+            node.distance += light.t;
+            node.local = light.radiance;
+        }
+        w.missed[i] = w.active[i] && w.points.slot[i] == kNoSlot;
+        any_missed |= w.missed[i];
+        any_hit |= w.points.slot[i] != kNoSlot;
+    }
+    std::fill(w.missed + count, w.missed + kBatch, uint8_t{0});
+    if (any_missed && snapshot.world.radiance != Vec3(0, 0, 0)) {
+        sample_background(snapshot, w.secondary.direction, w.missed, w.background);
+        for (int i = 0; i < count; ++i) {
+            if (!w.missed[i]) continue;
+            gain(w.rays[i], w.background.get(i));
+            if (w.tree) (*w.tree)[static_cast<size_t>(w.rays[i].node)].local = w.background.get(i);
+        }
+    }
+    if (!any_hit) return;
+
+    locate(snapshot, job.settings.normals(), w.points);
+    if (snapshot.needs_footprint) {
+        for (int i = 0; i < count; ++i) {
+            const Vec3 d = w.rays[i].direction;
+            const float width = w.rays[i].width + w.rays[i].spread * w.points.depth[i];
+            const Vec3 across = (std::abs(d.z) < 0.9f ? Vec3(0, 0, 1) : Vec3(1, 0, 0)).cross(d).normalized();
+            w.steps[0].set(i, across * width);
+            w.steps[1].set(i, d.cross(across) * width);
+        }
+        make_footprints({w.secondary.direction, false, Vec3(0, 0, 0), Vec3(0, 0, 0), w.steps}, w.points);
+    }
+    shade(
+        Coherence::incoherent,
+        [&](uint32_t pair, float* u, float* v) { random_pair_of(w.keys, w.samples, pair, u, v); }, w);
+    for (int i = 0; i < count; ++i) {
+        if (w.points.slot[i] == kNoSlot) continue;
+        const PathRay& ray = w.rays[i];
+        const float alpha = w.coefficients.alpha[i];
+        gain(ray, w.radiance.get(i) * alpha);
+        if (w.tree) record_hit(ray, i, w.points.depth[i], w);
+        if (alpha < 1 && ray.holes < kGreatestLayers) {
+            // The same ray goes on behind.
+            PathRay behind = ray;
+            behind.weight = ray.weight * (1 - alpha);
+            behind.width += ray.spread * w.points.depth[i];
+            ++behind.holes;
+            const Vec3 normal = w.points.geometric_normal.get(i);
+            behind.origin = w.points.position.get(i) - normal * w.points.offset[i];
+            behind.skipped = std::abs(normal.dot(ray.direction)) * w.points.offset[i];
+            if (alpha == 0 && !w.crosses[i]) behind.medium = w.beyond[i];
+            if (w.tree) {
+                RayNode node;
+                node.kind = RayNode::Kind::transmission;
+                node.parent = ray.node;
+                node.origin = behind.origin;
+                node.direction = behind.direction;
+                node.weight = Vec3(1, 1, 1) * (1 - alpha);
+                behind.node = static_cast<int32_t>(w.tree->size());
+                w.tree->push_back(node);
+            }
+            if (std::max({behind.weight.x, behind.weight.y, behind.weight.z}) >= job.settings.trace.least_weight)
+                w.stack.push_back(behind);
+        }
+        if (w.points.any_mirror || w.points.any_transmission) spawn(i, ray, w.points.depth[i], w);
+    }
+    job.counts->shading_time += nanoseconds(traced, Clock::now()) - w.shadow_time;
+}
+
+void Tracer::drain(size_t least, TreeWorkspace& w) const {
+    while (!w.stack.empty() && w.stack.size() >= least) {
+        if (*job.cancelled) return w.stack.clear();
+        secondary(w);
+    }
+}
+
+void Tracer::begin_block(uint32_t block_x, uint32_t block_y, TreeWorkspace& w) const {
+    w.sums = job.film->block(block_x, block_y);
+    prepare_block(maker, block_x, block_y, w.primary);
+    w.media.clear();
+    w.start = Media::kOutside;
+    for (const auto& [slot, material] : around_eye) w.start = w.media.enter(w.start, slot, material);
+}
+
+void Tracer::block(uint32_t block_x, uint32_t block_y, const TileWork& work, TreeWorkspace& w) const {
+    begin_block(block_x, block_y, w);
+    for (uint32_t sample = work.first_sample; sample < work.end_sample; ++sample) {
+        if (*job.cancelled) return;
+        std::fill_n(w.active, kBatch, uint8_t{1});
+        primary(block_x, block_y, sample, w);
+        drain(kBatch, w);
+        job.film->add_samples(block_x, block_y, 1);
+    }
+    drain(1, w);
+}
+
+void Tracer::tile(const TileWork& work) const {
+    const auto w = std::make_unique<TreeWorkspace>(snapshot);
+    for (uint32_t y = work.block_y0; y < work.block_y1; ++y)
+        for (uint32_t x = work.block_x0; x < work.block_x1; ++x) block(x, y, work, *w);
+    job.counts->reflection_rays += w->reflection_rays;
+    job.counts->transmission_rays += w->transmission_rays;
+}
+
+}  // namespace trp
