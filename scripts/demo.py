@@ -4,8 +4,8 @@
     blender -b --factory-startup --python-exit-code 1 --python scripts/demo.py -- OUTPUT_FOLDER
 
 Writes METHOD.png for each method and methods.png, which is itself a Blender scene of pictures and captions that the
-engine renders; and shadings.png, which sets flat, Gouraud and Phong shading of a coarse vase side by side, with the
-intensity along one scan line under each.
+engine renders; shadings.png, which sets flat, Gouraud and Phong shading of a coarse vase side by side, with the
+intensity along one scan line under each; and whitted_spheres.png, a glass and a mirror ball by ray tracing.
 """
 
 import os
@@ -140,6 +140,16 @@ def render_shadings(path):
     print(f"demo: {path.name}", flush=True)
 
 
+def render_whitted(path):
+    """A glass and a mirror ball by ray tracing."""
+    import whitted_spheres
+
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    whitted_spheres.build()
+    use_engine(bpy.context.scene, "ray_tracing", 64)
+    print(f"demo: {path.name} in {render_to(path):.1f} s", flush=True)
+
+
 def main(folder):
     import still_life
     import triptych
@@ -156,6 +166,7 @@ def main(folder):
             print(f"demo: {path.name} in {tiles[-1][2]:.1f} s", flush=True)
         render_sheet(folder / "methods.png", tiles)
         render_shadings(folder / "shadings.png")
+        render_whitted(folder / "whitted_spheres.png")
     finally:
         triptych.unregister()
 

@@ -15,6 +15,7 @@ const char* const kNormals[] = {"mesh", "averaged", nullptr};
 const char* const kAveraging[] = {"plain", "angle", "area", nullptr};
 const char* const kInterpolations[] = {"perspective", "scan_line", nullptr};
 const char* const kFalloffs[] = {"light", "none", "linear", "quadratic", nullptr};
+const char* const kTransparentShadows[] = {"opaque", "transmission", "none", nullptr};
 const char* const kFilters[] = {"box", "gaussian", "blackman_harris", nullptr};
 const char* const kLineColors[] = {"line", "object", "material", nullptr};
 const char* const kHidden[] = {"none", "faint", "dashed", nullptr};
@@ -40,6 +41,11 @@ const SettingRow kSettings[] = {
      "Lights are blocked by what stands in their way; the classic methods of the rasterizer have none unless asked", "",
      "on", 0, 1, nullptr, kSurfaceMethods, "visible_surface=off flat=off gouraud=off phong=off",
      [](Settings& s, const double* v) { s.illumination.shadows = *v != 0; }},
+    {TRP_TYPE_ENUM, "shading.transparent_shadows", "Transparent shadows",
+     "What transparent surfaces (K_T) do to shadows: block light like all others, let through the share and the colour "
+     "that K_T says, straight on, or cast none",
+     "", "opaque", 0, 0, kTransparentShadows, kSurfaceMethods, "",
+     [](Settings& s, const double* v) { s.illumination.transparent_shadows = static_cast<TransparentShadows>(*v); }},
     {TRP_TYPE_ENUM, "shading.specular", "Specular",
      "The highlight of lights (not of the world): none, Phong's (V·R)^n, or Blinn's (N·H)^n, which is about twice as "
      "wide for the same n",

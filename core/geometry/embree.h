@@ -17,8 +17,9 @@ namespace trp {
 // What rays ask for, as bits of RTCRay::mask and of a geometry's mask.
 enum RayMask : unsigned {
     kSeenByCamera = 1,
-    kCastsShadow = 2,    // and is opaque everywhere
-    kFiltersShadow = 4,  // casts shadows that its alpha makes lighter
+    kCastsShadow = 2,      // and is opaque everywhere
+    kFiltersShadow = 4,    // casts shadows that its alpha makes lighter
+    kTransmitsShadow = 8,  // casts shadows that its transmission may make lighter, as the settings say
 };
 
 // Coherent packets trace 3-4 times as fast where rays lie close together, but a hit may then depend on the other lanes

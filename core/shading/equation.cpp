@@ -26,7 +26,7 @@ void add_ambient_lanes(const Points& points, const Coefficients& coefficients, c
 }
 
 void add_light_lanes(Specular specular, const Points& points, const Coefficients& coefficients, const LaneVec3& weight,
-                     const LightSamples& samples, const float* visibility, LaneVec3& radiance,
+                     const LightSamples& samples, const LaneVec3& visibility, LaneVec3& radiance,
                      ArrivingLight* arriving) {
     const hn::ScalableTag<float> d;
     const hn::RebindToUnsigned<decltype(d)> du;
@@ -39,8 +39,8 @@ void add_light_lanes(Specular specular, const Points& points, const Coefficients
         if (hn::AllFalse(d, lit)) continue;
         const V shine = highlight(d, specular, n, load3(d, points.to_viewer, i), l, n_dot_l,
                                   hn::Load(d, coefficients.shininess + i));
-        const V s = hn::IfThenElseZero(lit, hn::Load(d, visibility + i));
         for (int c = 0; c < 3; ++c) {
+            const V s = hn::IfThenElseZero(lit, hn::Load(d, visibility[c] + i));
             const V light = hn::IfThenElseZero(lit, hn::Load(d, samples.light[c] + i));
             const V term = light_term(hn::Load(d, coefficients.diffuse[c] + i), n_dot_l, hn::Load(d, weight[c] + i),
                                       shine, hn::Mul(light, s));
@@ -99,7 +99,7 @@ void add_ambient(const Points& points, const Coefficients& coefficients, const V
 }
 
 void add_light(Specular specular, const Points& points, const Coefficients& coefficients, const LaneVec3& weight,
-               const LightSamples& samples, const float* visibility, LaneVec3& radiance, ArrivingLight* arriving) {
+               const LightSamples& samples, const LaneVec3& visibility, LaneVec3& radiance, ArrivingLight* arriving) {
     HWY_DYNAMIC_DISPATCH(add_light_lanes)
     (specular, points, coefficients, weight, samples, visibility, radiance, arriving);
 }

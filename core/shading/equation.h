@@ -29,7 +29,7 @@ void evaluate(const Snapshot& snapshot, Points& points, Coefficients& coefficien
 void add_ambient(const Points& points, const Coefficients& coefficients, const Vec3& ambient_light, LaneVec3& radiance);
 
 // radiance += (K_D (N·L) + K_S (V·R)^n) S_L I_L; `weight` is K_S, `visibility` S_L, a fraction where the way is partly
-// blocked.
+// blocked, of each colour.
 // Where `arriving` is given, it gains luminance-free sums of (N·L) I_L, unblocked and blocked, for the shadow pass.
 struct ArrivingLight {
     LaneVec3 unblocked, blocked;
@@ -38,6 +38,6 @@ struct ArrivingLight {
     }
 };
 void add_light(Specular specular, const Points& points, const Coefficients& coefficients, const LaneVec3& weight,
-               const LightSamples& samples, const float* visibility, LaneVec3& radiance, ArrivingLight* arriving);
+               const LightSamples& samples, const LaneVec3& visibility, LaneVec3& radiance, ArrivingLight* arriving);
 
 }  // namespace trp

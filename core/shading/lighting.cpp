@@ -22,10 +22,10 @@ void add_lights(const Snapshot& snapshot, const Illumination& illumination, Cohe
             const auto before = Clock::now();
             counts.rays +=
                 trace_shadows(snapshot, points, scratch.samples, is_world ? Coherence::incoherent : coherence,
-                              scratch.visibility, scratch.shadow, program);
+                              illumination.transparent_shadows, scratch.visibility, scratch.shadow, program);
             counts.nanoseconds += nanoseconds(before, Clock::now());
         } else {
-            std::fill_n(scratch.visibility, kBatch, 1.0f);
+            for (int c = 0; c < 3; ++c) std::fill_n(scratch.visibility[c], kBatch, 1.0f);
         }
         // The highlight stands for lights that have a place; the world shows in mirrors.
         add_light(is_world ? Specular::none : illumination.specular, points, coefficients,

@@ -12,6 +12,7 @@ struct Illumination {
     Specular specular = Specular::phong;
     int32_t falloff = -1;  // TRP_FALLOFF_… for all lights; −1: each light's own
     bool shadows = true;
+    TransparentShadows transparent_shadows = TransparentShadows::opaque;
     bool mirrors = false;   // I_R is traced: lights that rays can hit have no highlight on mirrors
     Vec3 ambient{0, 0, 0};  // I_A
 };
@@ -23,7 +24,8 @@ inline constexpr uint32_t kFirstLightPair = 4;  // a pair to each light; those b
 // One to a thread.
 struct LightScratch {
     LightSamples samples;
-    alignas(64) Lanes u, v, visibility;
+    alignas(64) Lanes u, v;
+    LaneVec3 visibility;
     LaneVec3 weight;  // of highlights of lights that rays can hit
     ShadowScratch shadow;
 };

@@ -12,7 +12,8 @@ HWY_BEFORE_NAMESPACE();
 namespace trp::HWY_NAMESPACE {
 
 // Rays of 16 lanes from `first` on, to where the light was sampled. Returns whether any is to be traced.
-bool make_shadow_packet(const Points& points, const LightSamples& samples, int first, RTCRay16& ray, int* valid) {
+bool make_shadow_packet(const Points& points, const LightSamples& samples, unsigned mask, int first, RTCRay16& ray,
+                        int* valid) {
     const hn::CappedTag<float, 16> d;
     const hn::RebindToSigned<decltype(d)> di;
     const hn::RebindToUnsigned<decltype(d)> du;
@@ -41,20 +42,20 @@ bool make_shadow_packet(const Points& points, const LightSamples& samples, int f
         // Short of the light, so that an emitting surface does not shade itself.
         hn::Store(hn::Mul(hn::Load(d, samples.distance + i), hn::Set(d, 0.9999f)), d, ray.tfar + k);
         hn::Store(zero, d, ray.time + k);
-        hn::Store(hn::Set(du, kCastsShadow), du, ray.mask + k);
+        hn::Store(hn::Set(du, mask), du, ray.mask + k);
         hn::Store(hn::Zero(du), du, ray.flags + k);
         hn::Store(hn::Zero(du), du, ray.id + k);
     }
     return any;
 }
 
-void read_shadow_packet(const RTCRay16& ray, const int* valid, float* visibility) {
+void read_shadow_packet(const RTCRay16& ray, const int* valid, int first, LaneVec3& visibility) {
     const hn::CappedTag<float, 16> d;
     const hn::RebindToSigned<decltype(d)> di;
     for (int k = 0; k < 16; k += static_cast<int>(hn::Lanes(d))) {
         const auto traced = hn::RebindMask(d, hn::Ne(hn::Load(di, valid + k), hn::Zero(di)));
         const auto open = hn::And(traced, hn::Ge(hn::Load(d, ray.tfar + k), hn::Zero(d)));
-        hn::Store(hn::IfThenElseZero(open, hn::Set(d, 1.0f)), d, visibility + k);
+        for (int c = 0; c < 3; ++c) hn::Store(hn::IfThenElseZero(open, hn::Set(d, 1.0f)), d, visibility[c] + first + k);
     }
 }
 
@@ -70,9 +71,25 @@ namespace {
 
 constexpr int kGreatestLayers = 64;  // of holes in a row along one shadow ray; beyond, it counts as blocked
 
-// Multiplies visibility by what the surfaces with holes on the way let through.
-uint64_t filter_shadows(const Snapshot& snapshot, const Points& points, const LightSamples& samples, float* visibility,
-                        ShadowScratch& shadow, ProgramScratch& program) {
+// What a surface on the way lets through.
+Vec3 passing(const Snapshot& snapshot, const Points& hits, const Coefficients& coefficients, int i,
+             TransparentShadows transparent) {
+    const CompiledMaterial& material = snapshot.materials[hits.material[i]];
+    if (!material.double_sided && hits.behind[i]) return {0, 0, 0};
+    const float alpha = coefficients.alpha[i];
+    const Vec3 one(1, 1, 1);
+    if (!material.transmits || transparent == TransparentShadows::opaque) return one * (1 - alpha);
+    if (transparent == TransparentShadows::none) return one;
+    return one * (1 - alpha) + coefficients.transmission.get(i) * alpha;
+}
+
+// Multiplies visibility by what the surfaces with holes or transmission on the way let through.
+uint64_t filter_shadows(const Snapshot& snapshot, const Points& points, const LightSamples& samples,
+                        TransparentShadows transparent, LaneVec3& visibility, ShadowScratch& shadow,
+                        ProgramScratch& program) {
+    const unsigned mask =
+        transparent == TransparentShadows::opaque ? kFiltersShadow : kFiltersShadow | kTransmitsShadow;
+    const auto is_open = [&](int i) { return visibility.get(i) != Vec3(0, 0, 0); };
     Lanes reached;  // ray parameter that each lane has come to
     std::fill_n(reached, kBatch, 0.0f);
     shadow.points.clear_footprints();
@@ -83,13 +100,12 @@ uint64_t filter_shadows(const Snapshot& snapshot, const Points& points, const Li
         for (int first = 0; first < kBatch; first += 16) {
             alignas(64) RTCRayHit16 packet;
             alignas(64) int valid[16];
-            HWY_DYNAMIC_DISPATCH(make_shadow_packet)(points, samples, first, packet.ray, valid);
+            HWY_DYNAMIC_DISPATCH(make_shadow_packet)(points, samples, mask, first, packet.ray, valid);
             for (int k = 0; k < 16; ++k) {
                 const int i = first + k;
-                if (!(visibility[i] > 0)) valid[k] = 0;
+                if (!is_open(i)) valid[k] = 0;
                 rays += valid[k] != 0;
                 packet.ray.tnear[k] = reached[i];
-                packet.ray.mask[k] = kFiltersShadow;
                 packet.hit.geomID[k] = packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
             }
             intersect16(snapshot.rays->embree(), valid, packet, Coherence::incoherent);
@@ -114,35 +130,38 @@ uint64_t filter_shadows(const Snapshot& snapshot, const Points& points, const Li
         evaluate(snapshot, hits, shadow.coefficients, program);
         for (int i = 0; i < kBatch; ++i) {
             if (hits.slot[i] == kNoSlot) continue;
-            const bool one_sided = !snapshot.materials[hits.material[i]].double_sided && hits.behind[i];
-            visibility[i] *= one_sided ? 0 : 1 - shadow.coefficients.alpha[i];
-            if (visibility[i] < 1e-4f) visibility[i] = 0;
+            const Vec3 left = visibility.get(i) * passing(snapshot, hits, shadow.coefficients, i, transparent);
+            visibility.set(i, std::max({left.x, left.y, left.z}) < 1e-4f ? Vec3(0, 0, 0) : left);
             reached[i] += 2 * hits.offset[i];
         }
     }
     for (int i = 0; i < kBatch; ++i)
-        if (shadow.points.slot[i] != kNoSlot) visibility[i] = 0;
+        if (shadow.points.slot[i] != kNoSlot) visibility.set(i, {0, 0, 0});
     return rays;
 }
 
 }  // namespace
 
 uint64_t trace_shadows(const Snapshot& snapshot, const Points& points, const LightSamples& samples, Coherence coherence,
-                       float* visibility, ShadowScratch& shadow, ProgramScratch& program) {
+                       TransparentShadows transparent, LaneVec3& visibility, ShadowScratch& shadow,
+                       ProgramScratch& program) {
+    const bool blocks = transparent == TransparentShadows::opaque;
+    const unsigned mask = blocks ? kCastsShadow | kTransmitsShadow : kCastsShadow;
     uint64_t rays = 0;
     if (snapshot.rays->occlusion_coherence() == Coherence::incoherent) coherence = Coherence::incoherent;
     for (int first = 0; first < kBatch; first += 16) {
         alignas(64) RTCRay16 ray;
         alignas(64) int valid[16];
-        if (!HWY_DYNAMIC_DISPATCH(make_shadow_packet)(points, samples, first, ray, valid)) {
-            std::fill_n(visibility + first, 16, 0.0f);
+        if (!HWY_DYNAMIC_DISPATCH(make_shadow_packet)(points, samples, mask, first, ray, valid)) {
+            for (int c = 0; c < 3; ++c) std::fill_n(visibility[c] + first, 16, 0.0f);
             continue;
         }
         for (int k = 0; k < 16; ++k) rays += valid[k] != 0;
         occluded16(snapshot.rays->embree(), valid, ray, coherence);
-        HWY_DYNAMIC_DISPATCH(read_shadow_packet)(ray, valid, visibility + first);
+        HWY_DYNAMIC_DISPATCH(read_shadow_packet)(ray, valid, first, visibility);
     }
-    if (snapshot.any_holes) rays += filter_shadows(snapshot, points, samples, visibility, shadow, program);
+    if (snapshot.any_holes || (!blocks && snapshot.any_transmission))
+        rays += filter_shadows(snapshot, points, samples, transparent, visibility, shadow, program);
     return rays;
 }
 

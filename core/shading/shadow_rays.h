@@ -12,9 +12,13 @@ struct ShadowScratch {
     Coefficients coefficients;
 };
 
-// visibility[lane]: 1 where the way is free, 0 where it is blocked, between where alpha lets part through. Lanes that
+// What transparent surfaces do to shadows: block light like others, let through what K_T says, or nothing.
+enum class TransparentShadows { opaque, transmission, none };
+
+// visibility: 1 where the way is free, 0 where it is blocked, between where alpha or K_T lets part through. Lanes that
 // the light cannot reach are 0. Returns the number of rays.
 uint64_t trace_shadows(const Snapshot& snapshot, const Points& points, const LightSamples& samples, Coherence coherence,
-                       float* visibility, ShadowScratch& shadow, ProgramScratch& program);
+                       TransparentShadows transparent, LaneVec3& visibility, ShadowScratch& shadow,
+                       ProgramScratch& program);
 
 }  // namespace trp

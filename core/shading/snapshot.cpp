@@ -258,13 +258,17 @@ std::shared_ptr<const Snapshot> make_snapshot(const Scene& scene, std::shared_pt
         auto& slots = slots_of[id] = resolve_slots(*snapshot, index_of, id, *instance, surface->mesh());
         const bool holes =
             std::any_of(slots.begin(), slots.end(), [&](uint32_t m) { return snapshot->materials[m].has_holes; });
+        const bool transmits =
+            std::any_of(slots.begin(), slots.end(), [&](uint32_t m) { return snapshot->materials[m].transmits; });
         snapshot->any_holes |= holes && !is_wire;
+        snapshot->any_transmission |= transmits && !is_wire;
         Placement p;
         p.instance = id;
         p.surface = surface;
         p.world_from_object = instance->world_from_object[0].relative_to(snapshot->origin);
         p.mask = (instance->visible_camera ? kSeenByCamera : 0u) | (!instance->visible_shadow ? 0u
                                                                     : holes                   ? kFiltersShadow
+                                                                    : transmits               ? kTransmitsShadow
                                                                                               : kCastsShadow);
         if (!has_extent(world_bounds(*surface, p.world_from_object))) {
             warn(*snapshot, TRP_WARNING_MESH, id,

@@ -66,8 +66,9 @@ struct Snapshot {
     World world;
     std::shared_ptr<const Camera> camera;  // null: none; in world space, not relative
     bool needs_footprint = false;
-    bool any_holes = false;     // a shown material's alpha may be below 1
-    bool seen_through = false;  // or one transmits, or has one side: the eye may see what lies behind a surface
+    bool any_holes = false;         // a shown material's alpha may be below 1
+    bool any_transmission = false;  // a shown material transmits, and may be lighter in shadows
+    bool seen_through = false;      // or one transmits, or has one side: the eye may see what lies behind a surface
 
     std::map<uint32_t, std::shared_ptr<const Surface>> made_surfaces;  // by mesh id, for the next commit
     std::vector<Warning> warnings;

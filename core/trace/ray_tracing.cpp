@@ -98,7 +98,15 @@ std::vector<RayNode> trace_ray_tree(const RenderJob& job, uint32_t x, uint32_t y
     const auto i = static_cast<int>(lane);
     tree[0].origin = w->primary.origin.get(i);
     tree[0].direction = w->primary.direction.get(i).normalized();
-    tracer.drain(1, *w);
+    constexpr size_t kMostRays = size_t{1} << 20;
+    while (!w->stack.empty()) {
+        tracer.secondary(*w);
+        if (tree.size() > kMostRays)
+            fail(TRP_ERROR_MEMORY,
+                 "the tree of pixel ({}, {}) has more than {} rays; a lower trace.depth or a greater "
+                 "trace.least_weight makes it smaller",
+                 x, y, kMostRays);
+    }
     for (size_t k = tree.size(); k-- > 0;) {
         RayNode& node = tree[k];
         node.intensity += node.local;

@@ -30,7 +30,7 @@ struct PathRay {
 struct TreeWorkspace {
     explicit TreeWorkspace(const Snapshot& snapshot) : media(snapshot) {
         prepare(primary, kSeenByCamera);
-        prepare(secondary, kSeenByCamera | kCastsShadow | kFiltersShadow);
+        prepare(secondary, kSeenByCamera | kCastsShadow | kFiltersShadow | kTransmitsShadow);
     }
     BlockRays primary, secondary;
     Points points;

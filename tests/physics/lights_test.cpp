@@ -255,5 +255,32 @@ TEST(Shadows, AlphaLetsItsShareThrough) {
     EXPECT_NEAR(mean(render(f.scene, 1, 1, {{"samples", "1"}})) / (kRho / kPi * 100 / 9 * 0.75 * 0.75), 1, 1e-4);
 }
 
+TEST(Shadows, TransmissionColoursThem) {
+    OverFloor f;
+    f.scene.light(TRP_LIGHT_POINT, {100, 100, 100}, translation({0, 0, 3}));
+    const uint32_t pane = f.scene.material([](TrpMaterialDesc& d) {
+        d.transmission = {{0.25f, 0.5f, 1}, TRP_NO_NODE};
+        d.alpha = {{0.8f, 0, 0}, TRP_NO_NODE};
+    });
+    const uint32_t clear = f.scene.material([](TrpMaterialDesc& d) { d.transmission = {{0.5f, 1, 1}, TRP_NO_NODE}; });
+    f.scene.object(floor_square(1, 1), pane);
+    f.scene.object(floor_square(1, 1.5f), clear);
+    f.scene.camera(look_at({0, -3, 0.5f}, {0, 0, 0}), [](TrpCameraDesc& d) { d.field_of_view = 1e-4f; });
+    f.scene.commit();
+    for (const char* method : {"ray_casting", "ray_tracing", "phong"}) {
+        const auto lit = [&](const char* shadows, int c) {
+            Render render(f.scene, 1, 1,
+                          {{"samples", "1"}, {"shadows", "on"}, {"shading.transparent_shadows", shadows}}, {}, method);
+            return render.run().read().values[static_cast<size_t>(c)] / (kRho / kPi * 100 / 9);
+        };
+        const double through[3] = {0.25, 0.5, 1};
+        for (int c = 0; c < 3; ++c) {
+            EXPECT_EQ(lit("opaque", c), 0) << method;
+            EXPECT_NEAR(lit("transmission", c), (0.2 + 0.8 * through[c]) * (c ? 1 : 0.5), 1e-4) << method << ", " << c;
+            EXPECT_NEAR(lit("none", c), 1, 1e-4) << method;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace trp_test

@@ -7,7 +7,10 @@
 namespace trp_test {
 namespace {
 
-const Settings kOneRay = {{"samples", "1"}, {"film.filter_width", "0"}, {"trace.least_weight", "0"}};
+const Settings kOneRay = {{"samples", "1"},
+                          {"film.filter_width", "0"},
+                          {"trace.least_weight", "0"},
+                          {"shading.transparent_shadows", "opaque"}};
 
 Settings with(Settings settings, const Settings& more) {
     settings.insert(settings.end(), more.begin(), more.end());
@@ -525,6 +528,20 @@ TEST(RayTree, IsGuarded) {
     fails(trp_render_trace_tree(render, 8, 0, &count), TRP_ERROR_ARGUMENT, "(8, 0)");
     fails(trp_render_trace_tree(cast, 0, 0, &count), TRP_ERROR_STATE, "ray_casting");
     fails(trp_render_ray(render, 0, &ray), TRP_ERROR_ARGUMENT, "there are 0");
+    Scene two_ways;
+    const auto pane = [](TrpMaterialDesc& d) {
+        d.thin = 1;
+        d.fresnel = 0;
+    };
+    two_ways.object(box({-2, -2, -2}, {2, 2, 2}), glass(two_ways, 1.5f, pane));
+    two_ways.object(box({-9, -9, -9}, {9, 9, 9}), glass(two_ways, 1.5f, pane));
+    two_ways.camera(look_at({0, -1, 0}, {0.3f, 0, 0.1f}));
+    two_ways.commit();
+    Render endless(
+        two_ways, 8, 8,
+        with(kOneRay, {{"trace.depth", "300"}, {"trace.reflection_depth", "300"}, {"trace.transmission_depth", "300"}}),
+        {}, "ray_tracing");
+    fails(trp_render_trace_tree(endless, 4, 4, &count), TRP_ERROR_MEMORY, "trace.depth");
     check(trp_render_trace_tree(render, 4, 4, &count));
     fails(trp_render_ray(render, count, &ray), TRP_ERROR_ARGUMENT, "no ray");
     fails(trp_render_ray(render, 0, &ray), TRP_ERROR_ARGUMENT, "struct_size");
