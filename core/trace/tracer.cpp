@@ -235,7 +235,8 @@ void Tracer::secondary(TreeWorkspace& w) const {
             gain(ray, light.radiance);
             w.points.slot[i] = kNoSlot;
             w.active[i] = 0;
-            if (!w.tree) continue;
+        }
+        if (light.t > 0 && w.tree) {
             RayNode& node = (*w.tree)[static_cast<size_t>(ray.node)];
             node.end = RayNode::End::light;
             node.distance += light.t;
