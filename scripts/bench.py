@@ -38,7 +38,12 @@ class Benchmark:
 def ray_casting(scene: str, light: str, goal: float) -> Benchmark:
     name = f"ray_casting.{scene}"
     arguments = ["--name", name, "--goal", str(goal), "--light", *light.split()]
-    return Benchmark([name], "ray_casting_bench", scene, arguments)
+    return Benchmark([name], "ray_bench", scene, arguments)
+
+
+def ray_tracing(scene: str, goal: float) -> Benchmark:
+    name = f"ray_tracing.{scene}"
+    return Benchmark([name], "ray_bench", scene, ["--name", name, "--goal", str(goal), "--method", "ray_tracing"])
 
 
 def raster(name: str, goal: float, *arguments: str) -> Benchmark:
@@ -51,6 +56,10 @@ BENCHMARKS = [
     ray_casting("tower_of_meshes", "-4 -17.5 8.5", 1.5),
     ray_casting("gallery", "5 5 3.8", 2),
     ray_casting("cornell_box", "0.278 -0.1 0.5", 4),
+    ray_tracing("tower_of_meshes", 1.5),
+    ray_tracing("gallery", 2),
+    ray_tracing("still_life", 2),
+    ray_tracing("whitted_spheres", 4),
     Benchmark(
         ["load.tower_of_meshes", "memory.tower_of_meshes"],
         "load_bench",

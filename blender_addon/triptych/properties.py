@@ -13,6 +13,7 @@ from bpy.props import (
     FloatVectorProperty,
     IntProperty,
     PointerProperty,
+    StringProperty,
 )
 
 from . import abi, core, settings
@@ -37,6 +38,7 @@ BLENDER_PASSES = {
     "IndexOB": ("IndexOB", "use_pass_object_index"),
     "IndexMA": ("IndexMA", "use_pass_material_index"),
     "Shadow": ("Shadow", "use_pass_shadow"),
+    "Environment": ("Env", "use_pass_environment"),
     "SampleCount": ("Debug Sample Count", None),
 }
 
@@ -71,26 +73,31 @@ def wanted_passes(view_layer, method):
 # ------------------------------------------------------------------------------------------- properties from the tables
 
 
-def _bool(setting, common):
-    if not setting.method_defaults:
-        return BoolProperty(default=setting.default == "on", **common)
-    # Shown as the method has it until it is set.
+def _shown_as_the_method_has_it(setting, from_text):
+    """get and set of a property that shows the method's own default until it is set."""
     choice = settings.choice_name(setting.name)
 
     def get(group):
-        stored = getattr(group, choice)
-        return (setting.default_for(group.method) if stored == settings.UNSET else stored) == "on"
+        return from_text(getattr(group, choice) or setting.default_for(group.method))
 
     def set(group, value):
-        setattr(group, choice, "on" if value else "off")
+        setattr(group, choice, settings.as_text(value))
 
-    return BoolProperty(get=get, set=set, **common)
+    return {"get": get, "set": set}
+
+
+def _bool(setting, common):
+    if setting.method_defaults:
+        return BoolProperty(**_shown_as_the_method_has_it(setting, lambda text: text == "on"), **common)
+    return BoolProperty(default=setting.default == "on", **common)
 
 
 def _int(setting, common):
     least, most = max(setting.minimum, -_INT_LIMIT - 1), min(setting.maximum, _INT_LIMIT)
-    default = min(max(int(float(setting.default)), int(least)), int(most))
-    return IntProperty(default=default, min=int(least), max=int(most), **common)
+    common = dict(common, min=int(least), max=int(most))
+    if setting.method_defaults:
+        return IntProperty(**_shown_as_the_method_has_it(setting, int), **common)
+    return IntProperty(default=min(max(int(float(setting.default)), int(least)), int(most)), **common)
 
 
 def _float(setting, common):
@@ -150,8 +157,7 @@ def _scene_group():
         name = settings.property_name(setting.name)
         annotations[name] = _setting_property(setting)
         if setting.method_defaults:
-            items = [(value, value, "") for value in (settings.UNSET, "on", "off")]
-            annotations[settings.choice_name(setting.name)] = EnumProperty(items=items, options={"HIDDEN"})
+            annotations[settings.choice_name(setting.name)] = StringProperty(options={"HIDDEN"})
         settings.PROPERTIES[setting.name] = name
     return type("TriptychSceneSettings", (bpy.types.PropertyGroup,), {"__annotations__": annotations})
 

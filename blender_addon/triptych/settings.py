@@ -5,15 +5,12 @@
 PROPERTIES = {}
 
 
-UNSET = "unset"
-
-
 def property_name(setting):
     return setting.replace(".", "_")
 
 
 def choice_name(setting):
-    """The property that holds "on", "off" or UNSET for a switch whose default is the method's."""
+    """The property that holds the text of a value whose default is the method's; empty: not set."""
     return property_name(setting) + "_choice"
 
 
@@ -38,7 +35,7 @@ def changed(scene):
         result["film.transparent"] = "on"
     for setting, name in PROPERTIES.items():
         choice = getattr(group, choice_name(setting), None)
-        if group.is_property_set(name) if choice is None else choice != UNSET:
+        if group.is_property_set(name) if choice is None else choice:
             result[setting] = as_text(getattr(group, name))
     return result
 

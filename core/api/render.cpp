@@ -176,6 +176,7 @@ TrpStatus trp_render_run(TrpRender* render, const TrpCallbacks* callbacks) {
         s.shadow_rays = counts.shadow_rays;
         s.reflection_rays = counts.reflection_rays;
         s.transmission_rays = counts.transmission_rays;
+        s.gather_rays = counts.diffuse_rays;
         s.primary_seconds = 1e-9 * static_cast<double>(counts.primary_time);
         s.shadow_seconds = 1e-9 * static_cast<double>(counts.shadow_time);
         s.shading_seconds = 1e-9 * static_cast<double>(counts.shading_time);

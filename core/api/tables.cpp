@@ -26,6 +26,10 @@ const MethodRow kMethods[] = {
     {"ray_tracing", "Ray Tracing",
      "Recursive ray tracing: mirror reflection and transparency, thin or by refraction, from every surface on",
      ray_tracing},
+    {"path_tracing", "Path Tracing",
+     "All light, by chance: paths with diffuse, glossy and mirror reflection and transmission, without bias; slow and "
+     "right",
+     path_tracing},
 };
 const uint32_t kMethodCount = sizeof kMethods / sizeof kMethods[0];
 

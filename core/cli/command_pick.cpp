@@ -13,7 +13,6 @@ namespace {
 using nlohmann::ordered_json;
 
 struct Options : PictureJob {
-    std::string pixel;
     bool as_json = false;
 };
 
@@ -26,8 +25,8 @@ ordered_json side_of(const TrpScanLine& line, int first) {
     return {{"vertices", vertices}, {"values", values}};
 }
 
-ordered_json describe(const TrpScanLine& line, const Options& options, const uint32_t (&pixel)[2]) {
-    ordered_json out = {{"pixel", pixel}, {"method", options.method}, {"seen", line.seen != 0}};
+ordered_json describe(const TrpScanLine& line, const Options& options) {
+    ordered_json out = {{"pixel", options.pixel}, {"method", options.method}, {"seen", line.seen != 0}};
     if (!line.seen) return out;
     out.update({{"mesh", line.mesh},
                 {"instance", line.instance},
@@ -64,25 +63,18 @@ void print_text(const TrpScanLine& line, const Options& options) {
 }
 
 int run(Options options) {
-    uint32_t pixel[2] = {};
-    if (!parse_numbers(options.pixel, pixel, 2)) {
-        throw UsageError(fmt::format("--pixel: '{}' is not X,Y", options.pixel));
-    }
     check_picture(options);
     if (options.method != "gouraud" && options.method != "phong") {
         throw UsageError(fmt::format("--method: {} does not interpolate; gouraud and phong do", options.method));
     }
     LoadedPicture picture = load_picture(options);
-    if (pixel[0] >= picture.width || pixel[1] >= picture.height) {
-        throw UsageError(fmt::format("--pixel: {} lies outside the picture of {} x {}", options.pixel, picture.width,
-                                     picture.height));
-    }
+    check_pixel(options, picture);
     const RenderHandle render = make_picture(options, picture);
     TrpScanLine line{};
     line.struct_size = sizeof line;
-    check(trp_render_pick_scan_line(render.get(), pixel[0], picture.height - 1 - pixel[1], &line));
+    check(trp_render_pick_scan_line(render.get(), options.pixel[0], picture.height - 1 - options.pixel[1], &line));
     if (options.as_json) {
-        fmt::print("{}\n", describe(line, options, pixel).dump(2, ' ', false, ordered_json::error_handler_t::replace));
+        fmt::print("{}\n", describe(line, options).dump(2, ' ', false, ordered_json::error_handler_t::replace));
     } else {
         print_text(line, options);
     }
@@ -97,7 +89,7 @@ Command add_pick_command(CLI::App& program) {
     const auto options = std::make_shared<Options>();
     options->method = "gouraud";
     add_picture_options(*app, *options);
-    app->add_option("--pixel", options->pixel, "X,Y of the pixel, from the top left")->required();
+    add_pixel_option(*app, *options);
     app->add_option("--method", options->method, "gouraud: radiance; phong: normals")->capture_default_str();
     app->add_flag("--json", options->as_json, "As JSON");
     return {app, [options] { return run(*options); }};

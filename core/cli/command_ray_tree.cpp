@@ -16,7 +16,7 @@ namespace {
 using nlohmann::ordered_json;
 
 struct Options : PictureJob {
-    std::string pixel, svg;
+    std::string svg;
     bool as_json = false;
 };
 
@@ -63,19 +63,12 @@ void print_text(const RayTree& tree) {
 }
 
 int run(Options options) {
-    uint32_t pixel[2] = {};
-    if (!parse_numbers(options.pixel, pixel, 2)) {
-        throw UsageError(fmt::format("--pixel: '{}' is not X,Y", options.pixel));
-    }
     if (!options.svg.empty()) check_writable(options.svg);
     check_picture(options);
     LoadedPicture picture = load_picture(options);
-    if (pixel[0] >= picture.width || pixel[1] >= picture.height) {
-        throw UsageError(fmt::format("--pixel: {} lies outside the picture of {} x {}", options.pixel, picture.width,
-                                     picture.height));
-    }
+    check_pixel(options, picture);
     const RenderHandle render = make_picture(options, picture);
-    const RayTree tree = trace_tree(render.get(), pixel[0], picture.height - 1 - pixel[1]);
+    const RayTree tree = trace_tree(render.get(), options.pixel[0], picture.height - 1 - options.pixel[1]);
     if (!options.svg.empty()) write_tree_svg(tree, options.svg);
     if (options.as_json) {
         fmt::print("{}\n", as_json(tree).dump(2, ' ', false, ordered_json::error_handler_t::replace));
@@ -92,7 +85,7 @@ Command add_ray_tree_command(CLI::App& program) {
     const auto options = std::make_shared<Options>();
     options->method = "ray_tracing";
     add_picture_options(*app, *options);
-    app->add_option("--pixel", options->pixel, "X,Y of the pixel, from the top left")->required();
+    add_pixel_option(*app, *options);
     app->add_flag("--json", options->as_json, "As JSON");
     app->add_option("--svg", options->svg, "Draw the tree into a file");
     return {app, [options] { return run(*options); }};

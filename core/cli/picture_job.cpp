@@ -56,6 +56,25 @@ void add_picture_options(CLI::App& app, PictureJob& job) {
     app.add_flag("--quiet", job.quiet, "No progress and no warnings");
 }
 
+void add_pixel_option(CLI::App& app, PictureJob& job) {
+    app.add_option_function<std::string>(
+           "--pixel",
+           [&job](const std::string& text) {
+               if (!parse_numbers(text, job.pixel, 2)) {
+                   throw UsageError(fmt::format("--pixel: '{}' is not X,Y", text));
+               }
+           },
+           "X,Y of the pixel, from the top left")
+        ->required();
+}
+
+void check_pixel(const PictureJob& job, const LoadedPicture& picture) {
+    if (job.pixel[0] >= picture.width || job.pixel[1] >= picture.height) {
+        throw UsageError(fmt::format("--pixel: {},{} lies outside the picture of {} x {}", job.pixel[0], job.pixel[1],
+                                     picture.width, picture.height));
+    }
+}
+
 void check_picture(PictureJob& job) {
     const std::vector<TrpMethodInfo> methods = all_methods();
     if (std::none_of(methods.begin(), methods.end(), [&](const TrpMethodInfo& m) { return job.method == m.name; })) {

@@ -19,6 +19,7 @@ struct PictureJob {
     std::vector<std::string> set;    // NAME=VALUE
     std::vector<std::pair<std::string, std::string>> settings;
     std::string threads;
+    uint32_t pixel[2] = {};  // from the top left, where a command asks for one
     bool quiet = false;
 
     uint32_t thread_count() const;
@@ -26,6 +27,9 @@ struct PictureJob {
 
 // Adds SCENE and the options for the rest to a command.
 void add_picture_options(CLI::App& app, PictureJob& job);
+
+// Adds --pixel, which is required.
+void add_pixel_option(CLI::App& app, PictureJob& job);
 
 // Splits the texts, and checks method, names and values. Throws a UsageError for what is wrong in the call.
 void check_picture(PictureJob& job);
@@ -36,6 +40,9 @@ struct LoadedPicture {
     uint32_t width = 0, height = 0;
 };
 LoadedPicture load_picture(const PictureJob& job);
+
+// Throws a UsageError where the picture does not have the job's pixel.
+void check_pixel(const PictureJob& job, const LoadedPicture& picture);
 
 // Commits the scene, with a camera and a light where it has none, says its warnings and makes a render of the whole
 // film with the file's settings and the job's.

@@ -36,7 +36,10 @@ struct Window {
 // The passes of a render that are asked for, and where their channels lie.
 class PassList {
   public:
-    PassList() { add(kCombined); }
+    PassList() {
+        first_channel_.fill(-1);
+        add(kCombined);
+    }
     void add(PassId pass);
     bool has(PassId pass) const { return first_channel_[pass] >= 0; }
     int first_channel(PassId pass) const { return first_channel_[pass]; }
@@ -44,7 +47,7 @@ class PassList {
     const std::vector<PassId>& order() const { return order_; }
 
   private:
-    int first_channel_[kPassCount] = {-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
+    std::array<int, kPassCount> first_channel_;
     int channels_ = 0;
     std::vector<PassId> order_;
 };

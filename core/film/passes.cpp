@@ -7,6 +7,9 @@
 namespace trp {
 namespace {
 
+constexpr char kRayMethods[] = "ray_casting ray_tracing path_tracing";
+constexpr char kBouncingMethods[] = "ray_tracing path_tracing";
+
 bool gives(const std::string& method, const Pass& pass) {
     const std::string names = fmt::format(" {} ", pass.methods);
     return names == " * " || names.find(fmt::format(" {} ", method)) != std::string::npos;
@@ -21,12 +24,25 @@ const Pass kPasses[kPassCount] = {
     {"Normal", "XYZ", "World-space shading normal, on the side that is seen", kSurfaceMethods, true},
     {"UV", "UVA", "Texture coordinates of the first UV set, and 1 where a surface is seen", kSurfaceMethods, false},
     {"Albedo", "RGB", "Diffuse reflectance K_D", kSurfaceMethods, true},
-    {"Emission", "RGB", "Emitted radiance I_E of surfaces in W/(m² sr)", kSurfaceMethods, true},
+    {"Emission", "RGB", "Radiance I_E that is seen of surfaces that emit it, and of area lights, in W/(m² sr)",
+     kSurfaceMethods, true},
     {"IndexOB", "X", "The object's index", "*", false},
     {"IndexMA", "X", "The material's index", "*", false},
     {"Shadow", "RGB", "The share of the light of all lamps that reaches the surface; 1 where nothing is seen",
      kSurfaceMethods, true},
     {"SampleCount", "X", "Samples taken in the pixel", "*", false},
+    {"Ambient", "RGB", "The part of the picture that is ambient light, K_A I_A, in W/(m² sr)", kRayMethods, true},
+    {"DiffuseDirect", "RGB", "The part that lights give surfaces that are seen, by K_D, in W/(m² sr)", kRayMethods,
+     true},
+    {"SpecularDirect", "RGB", "The part that is the highlights of lights, K_S, in W/(m² sr)", kRayMethods, true},
+    {"DiffuseIndirect", "RGB", "The part that other surfaces give those that are seen, by K_D, in W/(m² sr)",
+     "path_tracing", true},
+    {"Reflection", "RGB", "The part that is seen in mirrors and by gloss, in W/(m² sr)", kBouncingMethods, true},
+    {"Transmission", "RGB", "The part that is seen through surfaces, by K_T, in W/(m² sr)", kBouncingMethods, true},
+    {"Environment", "RGB", "The part that is the world, seen by the camera, in W/(m² sr)", kRayMethods, true},
+    {"RayCount", "X", "Rays traced for the pixel, without those of shadows", kRayMethods, false},
+    {"TreeDepth", "X", "The greatest number of reflections and transmissions in a row along the pixel's rays",
+     kBouncingMethods, false},
 };
 
 uint32_t channel_count(PassId pass) {

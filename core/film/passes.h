@@ -7,7 +7,7 @@
 namespace trp {
 
 // The methods that see surfaces, for the tables of passes and settings; the others draw edges.
-inline constexpr char kSurfaceMethods[] = "visible_surface flat gouraud phong ray_casting ray_tracing";
+inline constexpr char kSurfaceMethods[] = "visible_surface flat gouraud phong ray_casting ray_tracing path_tracing";
 
 enum PassId : uint32_t {
     kCombined,
@@ -21,6 +21,16 @@ enum PassId : uint32_t {
     kMaterialIndex,
     kShadow,
     kSampleCount,
+    // Parts of the picture, which add up to it.
+    kAmbientPart,
+    kDiffuseDirect,
+    kSpecularDirect,
+    kDiffuseIndirect,
+    kReflectionPart,
+    kTransmissionPart,
+    kEnvironment,
+    kRayCount,
+    kTreeDepth,
     kPassCount
 };
 

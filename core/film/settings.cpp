@@ -21,7 +21,7 @@ const char* const kLineColors[] = {"line", "object", "material", nullptr};
 const char* const kHidden[] = {"none", "faint", "dashed", nullptr};
 
 constexpr const char kLineMethods[] = "wireframe hidden_line";
-constexpr const char kTreeMethods[] = "ray_tracing";
+constexpr const char kTreeMethods[] = "ray_tracing path_tracing";
 
 Vec3 color_of(const double* v) {
     return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
@@ -32,7 +32,7 @@ Vec3 color_of(const double* v) {
 const SettingRow kSettings[] = {
     {TRP_TYPE_INT, "samples", "Samples",
      "Rays through each pixel; in the rasterizer, samples of large lights in each pixel", "", "16", 1, 65536, nullptr,
-     kSurfaceMethods, "", [](Settings& s, const double* v) { s.samples = static_cast<uint32_t>(*v); }},
+     kSurfaceMethods, "path_tracing=128", [](Settings& s, const double* v) { s.samples = static_cast<uint32_t>(*v); }},
     {TRP_TYPE_INT, "seed", "Seed", "Another seed gives other noise", "", "0", 0, 2147483647, nullptr, kSurfaceMethods,
      "", [](Settings& s, const double* v) { s.seed = static_cast<uint32_t>(*v); }},
     {TRP_TYPE_INT, "threads", "Threads", "Threads that work; 0 uses every core", "", "0", 0, 1024, nullptr, "*", "",
@@ -44,7 +44,7 @@ const SettingRow kSettings[] = {
     {TRP_TYPE_ENUM, "shading.transparent_shadows", "Transparent shadows",
      "What transparent surfaces (K_T) do to shadows: block light like all others, let through the share and the colour "
      "that K_T says, straight on, or cast none",
-     "", "opaque", 0, 0, kTransparentShadows, kSurfaceMethods, "",
+     "", "opaque", 0, 0, kTransparentShadows, "visible_surface flat gouraud phong ray_casting ray_tracing", "",
      [](Settings& s, const double* v) { s.illumination.transparent_shadows = static_cast<TransparentShadows>(*v); }},
     {TRP_TYPE_ENUM, "shading.specular", "Specular",
      "The highlight of lights (not of the world): none, Phong's (V·R)^n, or Blinn's (N·H)^n, which is about twice as "
@@ -94,17 +94,26 @@ const SettingRow kSettings[] = {
      [](Settings& s, const double* v) { s.scan_line = *v != 0; }},
     {TRP_TYPE_INT, "trace.depth", "Depth",
      "The greatest number of reflections and transmissions in a row along a ray; 0 traces none", "", "8", 0, 10000,
-     nullptr, kTreeMethods, "", [](Settings& s, const double* v) { s.trace.depth = static_cast<uint32_t>(*v); }},
-    {TRP_TYPE_INT, "trace.reflection_depth", "Reflections", "The greatest number of reflections along a ray", "", "8",
-     0, 10000, nullptr, kTreeMethods, "",
-     [](Settings& s, const double* v) { s.trace.reflections = static_cast<uint32_t>(*v); }},
+     nullptr, kTreeMethods, "path_tracing=64",
+     [](Settings& s, const double* v) { s.trace.depth = static_cast<uint32_t>(*v); }},
+    {TRP_TYPE_INT, "trace.reflection_depth", "Reflections", "The greatest number of mirror reflections along a ray", "",
+     "8", 0, 10000, nullptr, kTreeMethods, "path_tracing=64",
+     [](Settings& s, const double* v) { s.trace.ways[0] = static_cast<uint32_t>(*v); }},
     {TRP_TYPE_INT, "trace.transmission_depth", "Transmissions",
      "The greatest number of transmissions along a ray; a glass body takes two", "", "8", 0, 10000, nullptr,
-     kTreeMethods, "", [](Settings& s, const double* v) { s.trace.transmissions = static_cast<uint32_t>(*v); }},
+     kTreeMethods, "path_tracing=64",
+     [](Settings& s, const double* v) { s.trace.ways[1] = static_cast<uint32_t>(*v); }},
+    {TRP_TYPE_INT, "trace.diffuse_depth", "Diffuse reflections",
+     "The greatest number of diffuse reflections along a path; 0: lights alone light surfaces", "", "64", 0, 10000,
+     nullptr, "path_tracing", "", [](Settings& s, const double* v) { s.trace.ways[2] = static_cast<uint32_t>(*v); }},
+    {TRP_TYPE_BOOL, "trace.rough", "Rough reflections",
+     "Mirror reflections and transmissions are blurred like the highlight, by the shininess n: each sample takes one "
+     "ray of many. Off: all are sharp",
+     "", "off", 0, 1, nullptr, kTreeMethods, "", [](Settings& s, const double* v) { s.trace.rough = *v != 0; }},
     {TRP_TYPE_FLOAT, "trace.least_weight", "Least weight",
      "Rays that count for less than this share in their pixel are not traced; each takes at most this share of what it "
      "would have seen from the pixel. 0 traces all",
-     "", "0.001", 0, 1, nullptr, kTreeMethods, "",
+     "", "0.001", 0, 1, nullptr, "ray_tracing", "",
      [](Settings& s, const double* v) { s.trace.least_weight = static_cast<float>(*v); }},
     {TRP_TYPE_FLOAT, "lines.width", "Width", "Width of the lines", "pixels", "1.5", 0.01, 64, nullptr, kLineMethods, "",
      [](Settings& s, const double* v) { s.lines.width = static_cast<float>(*v); }},

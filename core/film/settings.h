@@ -23,8 +23,9 @@ struct LineSettings {
 
 // Where the ray tree ends.
 struct TraceLimits {
-    uint32_t depth = 8, reflections = 8, transmissions = 8;
-    float least_weight = 0.001f;  // of a ray in its pixel
+    uint32_t depth = 8, ways[3] = {8, 8, 64};  // by trace/tracer.h's Way: reflections, transmissions, diffuse
+    float least_weight = 0.001f;               // of a ray in its pixel
+    bool rough = false;                        // mirror and transmitted rays are scattered like the highlight
 };
 
 struct Settings {

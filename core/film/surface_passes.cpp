@@ -61,7 +61,10 @@ void add_background_lanes(const uint8_t* missed, const LaneVec3* throughput, con
             const V share = throughput ? hn::IfThenElseZero(misses, hn::Load(d, (*throughput)[c] + i)) : one;
             if (throughput) ends = hn::MulAdd(share, hn::Set(d, 1.0f / 3), ends);
             if (float* const shadow = sums.channel(kShadow, c)) add_to(d, shadow + i, share);
-            if (radiance) add_to(d, rgba[c] + i, hn::Mul(share, hn::Load(d, (*radiance)[c] + i)));
+            if (!radiance) continue;
+            const V seen = hn::Mul(share, hn::Load(d, (*radiance)[c] + i));
+            add_to(d, rgba[c] + i, seen);
+            if (float* const part = sums.channel(kEnvironment, c)) add_to(d, part + i, seen);
         }
         if (!transparent) add_to(d, rgba[3] + i, ends);
     }
@@ -90,6 +93,18 @@ void add_first(const SeenSurfaces& seen, int i, const BlockSums& sums) {
         index[i] = static_cast<float>(seen.snapshot.materials[points.material[i]].index);
 }
 
+// The parts of the radiance.
+void add_parts(const SeenSurfaces& seen, int i, const BlockSums& sums) {
+    const Vec3 share = (seen.throughput ? seen.throughput->get(i) : Vec3(1, 1, 1)) * seen.coefficients.alpha[i];
+    const Vec3 emitted = seen.coefficients.emission.get(i), ambient = seen.coefficients.ambient.get(i) * seen.ambient;
+    sums.add(kEmit, i, share * emitted);
+    sums.add(kAmbientPart, i, share * ambient);
+    if (!seen.diffuse) return;
+    const Vec3 diffuse = seen.diffuse->get(i);
+    sums.add(kDiffuseDirect, i, share * diffuse);
+    sums.add(kSpecularDirect, i, share * (seen.radiance.get(i) - emitted - ambient - diffuse));
+}
+
 }  // namespace
 
 void add_surfaces(const SeenSurfaces& seen, uint8_t* first, const BlockSums& sums) {
@@ -102,7 +117,7 @@ void add_surfaces(const SeenSurfaces& seen, uint8_t* first, const BlockSums& sum
         if (!(weights[i] > 0)) continue;
         sums.add(kNormal, i, points.normal.get(i) * weights[i]);
         sums.add(kAlbedo, i, seen.coefficients.diffuse.get(i) * weights[i]);
-        sums.add(kEmit, i, seen.coefficients.emission.get(i) * weights[i]);
+        add_parts(seen, i, sums);
         Vec3 share(1, 1, 1);
         for (int c = 0; c < 3 && seen.arriving; ++c)
             if (seen.arriving->unblocked[c][i] > 0)
@@ -128,6 +143,13 @@ void add_background(const Snapshot& snapshot, const LaneVec3& directions, const 
     static thread_local LaneVec3 radiance;
     if (shows) sample_background(snapshot, directions, missed, radiance);
     HWY_DYNAMIC_DISPATCH(add_background_lanes)(missed, throughput, shows ? &radiance : nullptr, transparent, sums);
+}
+
+void add_seen_light(int lane, const Vec3& throughput, const Vec3& radiance, const BlockSums& sums) {
+    sums.add(kCombined, lane, throughput * radiance);
+    sums.add(kEmit, lane, throughput * radiance);
+    sums.channel(kCombined, 3)[lane] += throughput.x;
+    sums.add(kShadow, lane, throughput);
 }
 
 void finish_depth(const uint8_t* first, const BlockSums& sums) {

@@ -9,14 +9,21 @@ namespace trp {
 inline constexpr float kNothingSeen = 1e10f;  // depth, as Blender has it
 inline constexpr int kGreatestLayers = 64;    // of surfaces with holes in a row, one behind the other
 
+// Whether passes are asked for that part the light of lights.
+inline bool wants_light_parts(const PassList& passes) {
+    return passes.has(kDiffuseDirect) || passes.has(kSpecularDirect);
+}
+
 struct SeenSurfaces {
     const Snapshot& snapshot;
     const Points& points;
     const Coefficients& coefficients;
-    const LaneVec3& radiance;       // 0 where a lane sees nothing
-    const LaneVec3* throughput;     // of the surfaces before; null: there is none
-    const ArrivingLight* arriving;  // null: all light arrives, or the Shadow pass was not asked for
-    bool straight = true;           // K_T lets what lies straight behind shine through; false: rays are traced for it
+    const LaneVec3& radiance;           // 0 where a lane sees nothing
+    const LaneVec3* throughput;         // of the surfaces before; null: there is none
+    const ArrivingLight* arriving;      // null: all light arrives, or the Shadow pass was not asked for
+    const LaneVec3* diffuse = nullptr;  // what lights add to radiance by K_D; null: not asked for
+    Vec3 ambient{0, 0, 0};              // I_A
+    bool straight = true;  // K_T lets what lies straight behind shine through; false: rays are traced for it
 };
 
 // Adds the lanes that see a surface. `first`: null, or in the first sample, whether a lane has its values of passes
@@ -30,6 +37,9 @@ Vec3 throughput_behind(const Points& points, const Coefficients& coefficients, i
 // Adds the background to the lanes that are `missed`.
 void add_background(const Snapshot& snapshot, const LaneVec3& directions, const uint8_t* missed,
                     const LaneVec3* throughput, bool transparent, const BlockSums& sums);
+
+// Adds a light that a lane sees.
+void add_seen_light(int lane, const Vec3& throughput, const Vec3& radiance, const BlockSums& sums);
 
 // After the first sample: the depth of lanes that have seen no surface.
 void finish_depth(const uint8_t* first, const BlockSums& sums);

@@ -25,7 +25,8 @@ struct RenderJob {
     std::atomic<bool>* cancelled = nullptr;
 
     struct Counts {
-        std::atomic<uint64_t> primary_rays{0}, shadow_rays{0}, reflection_rays{0}, transmission_rays{0};
+        std::atomic<uint64_t> primary_rays{0}, shadow_rays{0}, reflection_rays{0}, transmission_rays{0},
+            diffuse_rays{0};
         // Thread time in nanoseconds.
         std::atomic<uint64_t> primary_time{0}, shadow_time{0}, shading_time{0};
     };

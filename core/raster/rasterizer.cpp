@@ -150,7 +150,7 @@ void Rasterizer::illuminate(uint32_t block_x, uint32_t block_y, const LightShare
         add_lights(
             snapshot, illumination, lights.coherence,
             [&](uint32_t pair, float* u, float* v) { random_pair(block_x, block_y, job.settings.seed, s, pair, u, v); },
-            points, w.coefficients, one ? w.radiance : w.lit, wants_shadow_pass ? &w.arriving : nullptr, w.lights,
+            points, w.coefficients, {one ? w.radiance : w.lit, wants_shadow_pass ? &w.arriving : nullptr}, w.lights,
             w.program, shadows);
     const float share = 1 / static_cast<float>(lights.count);
     for (int c = 0; c < 3 && !one; ++c)

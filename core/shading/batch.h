@@ -22,6 +22,9 @@ struct LaneVec3 {
     alignas(64) Lanes x, y, z;
     Vec3 get(int i) const { return {x[i], y[i], z[i]}; }
     void set(int i, const Vec3& v) { x[i] = v.x, y[i] = v.y, z[i] = v.z; }
+    void clear() {
+        for (float* lanes : {x, y, z}) std::fill_n(lanes, kBatch, 0.0f);
+    }
     float* operator[](int k) { return k == 0 ? x : k == 1 ? y : z; }
     const float* operator[](int k) const { return k == 0 ? x : k == 1 ? y : z; }
 };

@@ -26,8 +26,9 @@ void add_ambient_lanes(const Points& points, const Coefficients& coefficients, c
 }
 
 void add_light_lanes(Specular specular, const Points& points, const Coefficients& coefficients, const LaneVec3& weight,
-                     const LightSamples& samples, const LaneVec3& visibility, LaneVec3& radiance,
-                     ArrivingLight* arriving) {
+                     const LightSamples& samples, const LaneVec3& visibility, const LightSums& sums) {
+    LaneVec3& radiance = sums.radiance;
+    ArrivingLight* const arriving = sums.arriving;
     const hn::ScalableTag<float> d;
     const hn::RebindToUnsigned<decltype(d)> du;
     using V = hn::Vec<decltype(d)>;
@@ -45,6 +46,10 @@ void add_light_lanes(Specular specular, const Points& points, const Coefficients
             const V term = light_term(hn::Load(d, coefficients.diffuse[c] + i), n_dot_l, hn::Load(d, weight[c] + i),
                                       shine, hn::Mul(light, s));
             hn::Store(hn::Add(hn::Load(d, radiance[c] + i), term), d, radiance[c] + i);
+            if (sums.diffuse) {
+                const V part = hn::Mul(hn::Mul(hn::Load(d, coefficients.diffuse[c] + i), n_dot_l), hn::Mul(light, s));
+                hn::Store(hn::Add(hn::Load(d, (*sums.diffuse)[c] + i), part), d, (*sums.diffuse)[c] + i);
+            }
             if (!arriving) continue;
             const V unblocked = hn::Mul(light, n_dot_l);
             hn::Store(hn::Add(hn::Load(d, arriving->unblocked[c] + i), unblocked), d, arriving->unblocked[c] + i);
@@ -99,9 +104,9 @@ void add_ambient(const Points& points, const Coefficients& coefficients, const V
 }
 
 void add_light(Specular specular, const Points& points, const Coefficients& coefficients, const LaneVec3& weight,
-               const LightSamples& samples, const LaneVec3& visibility, LaneVec3& radiance, ArrivingLight* arriving) {
+               const LightSamples& samples, const LaneVec3& visibility, const LightSums& sums) {
     HWY_DYNAMIC_DISPATCH(add_light_lanes)
-    (specular, points, coefficients, weight, samples, visibility, radiance, arriving);
+    (specular, points, coefficients, weight, samples, visibility, sums);
 }
 
 void evaluate(const Snapshot& snapshot, Points& points, Coefficients& coefficients, ProgramScratch& scratch) {

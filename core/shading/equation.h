@@ -28,16 +28,25 @@ void evaluate(const Snapshot& snapshot, Points& points, Coefficients& coefficien
 // radiance = I_E + K_A I_A
 void add_ambient(const Points& points, const Coefficients& coefficients, const Vec3& ambient_light, LaneVec3& radiance);
 
-// radiance += (K_D (N·L) + K_S (V·R)^n) S_L I_L; `weight` is K_S, `visibility` S_L, a fraction where the way is partly
-// blocked, of each colour.
-// Where `arriving` is given, it gains luminance-free sums of (N·L) I_L, unblocked and blocked, for the shadow pass.
+// Sums of (N·L) I_L, unblocked and blocked, for the shadow pass.
 struct ArrivingLight {
     LaneVec3 unblocked, blocked;
     void clear() {
-        for (int c = 0; c < 3; ++c) std::fill_n(unblocked[c], kBatch, 0.0f), std::fill_n(blocked[c], kBatch, 0.0f);
+        unblocked.clear();
+        blocked.clear();
     }
 };
+
+// What lights add to: lanes of radiance, and of what is asked for beside it (null: not).
+struct LightSums {
+    LaneVec3& radiance;
+    ArrivingLight* arriving = nullptr;
+    LaneVec3* diffuse = nullptr;  // the part of K_D
+};
+
+// radiance += (K_D (N·L) + K_S (V·R)^n) S_L I_L; `weight` is K_S, `visibility` S_L, a fraction where the way is partly
+// blocked, of each colour.
 void add_light(Specular specular, const Points& points, const Coefficients& coefficients, const LaneVec3& weight,
-               const LightSamples& samples, const LaneVec3& visibility, LaneVec3& radiance, ArrivingLight* arriving);
+               const LightSamples& samples, const LaneVec3& visibility, const LightSums& sums);
 
 }  // namespace trp

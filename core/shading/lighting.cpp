@@ -7,8 +7,8 @@
 namespace trp {
 
 void add_lights(const Snapshot& snapshot, const Illumination& illumination, Coherence coherence,
-                const RandomPairs& random, const Points& points, const Coefficients& coefficients, LaneVec3& radiance,
-                ArrivingLight* arriving, LightScratch& scratch, ProgramScratch& program, ShadowCounts& counts) {
+                const RandomPairs& random, const Points& points, const Coefficients& coefficients,
+                const LightSums& sums, LightScratch& scratch, ProgramScratch& program, ShadowCounts& counts) {
     const bool any_mirror = illumination.mirrors && points.any_mirror;
     for (int i = 0; i < kBatch && any_mirror; ++i)
         scratch.weight.set(i,
@@ -30,7 +30,7 @@ void add_lights(const Snapshot& snapshot, const Illumination& illumination, Cohe
         // The highlight stands for lights that have a place; the world shows in mirrors.
         add_light(is_world ? Specular::none : illumination.specular, points, coefficients,
                   any_mirror && light.is_hit_by_rays() ? scratch.weight : coefficients.specular, scratch.samples,
-                  scratch.visibility, radiance, arriving);
+                  scratch.visibility, sums);
     }
 }
 

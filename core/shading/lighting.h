@@ -19,7 +19,7 @@ struct Illumination {
 
 // Gives numbers in [0, 1) of the batch's random sequence by their pair: u, v[kBatch].
 using RandomPairs = std::function<void(uint32_t pair, float* u, float* v)>;
-inline constexpr uint32_t kFirstLightPair = 4;  // a pair to each light; those before are the camera's
+inline constexpr uint32_t kFirstLightPair = 5;  // a pair to each light; those before are the rays'
 
 // One to a thread.
 struct LightScratch {
@@ -36,7 +36,7 @@ struct ShadowCounts {
 
 // radiance += the terms of all lights, each sampled once. `coherence`: of the batch's lanes, for shadow rays.
 void add_lights(const Snapshot& snapshot, const Illumination& illumination, Coherence coherence,
-                const RandomPairs& random, const Points& points, const Coefficients& coefficients, LaneVec3& radiance,
-                ArrivingLight* arriving, LightScratch& scratch, ProgramScratch& program, ShadowCounts& counts);
+                const RandomPairs& random, const Points& points, const Coefficients& coefficients,
+                const LightSums& sums, LightScratch& scratch, ProgramScratch& program, ShadowCounts& counts);
 
 }  // namespace trp

@@ -133,24 +133,6 @@ uint32_t Distribution::sample(float& u) const {
     return entry;
 }
 
-SeenLight see_area_light(const ReadyLight& light, const Vec3& origin, const Vec3& direction) {
-    const float slope = direction.dot(light.z);
-    if (!(slope > 0)) return {};  // it shines to −z
-    const float t = (light.position - origin).dot(light.z) / slope;
-    if (!(t > 0)) return {};
-    const Vec3 offset = origin + direction * t - light.position;
-    const float x = offset.dot(light.x) / light.half_size[0], y = offset.dot(light.y) / light.half_size[1];
-    const bool within = light.ellipse ? x * x + y * y <= 1 : std::abs(x) <= 1 && std::abs(y) <= 1;
-    if (!within) return {};
-    float share = 1;
-    if (light.spread_tangent > 0) {
-        const float cosine = slope / direction.length();
-        const float tangent = std::sqrt(std::max(1 - cosine * cosine, 0.0f)) / cosine;
-        share = std::max(light.spread_tangent - tangent, 0.0f) * light.spread_scale;
-    }
-    return {t, light.emission * share};
-}
-
 LightList make_lights(const Snapshot& snapshot) {
     LightList list;
     for (const Light& lamp : snapshot.lamps)

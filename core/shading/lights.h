@@ -66,13 +66,6 @@ struct ReadyLight {
     }
 };
 
-// Where a ray meets an area light's front: the ray's parameter, or 0 where it does not, and the radiance seen there.
-struct SeenLight {
-    float t = 0;
-    Vec3 radiance{0, 0, 0};
-};
-SeenLight see_area_light(const ReadyLight& light, const Vec3& origin, const Vec3& direction);
-
 using LightList = std::vector<ReadyLight>;
 
 // The list of a snapshot whose surfaces, materials and lamps are ready.

@@ -7,7 +7,7 @@
 #include "film/pixel_random.h"
 #include "film/surface_passes.h"
 #include "shading/footprints.h"
-#include "trace/rays.h"
+#include "trace/seen_lights.h"
 
 namespace trp {
 namespace {
@@ -18,9 +18,10 @@ struct Workspace {
     BlockRays rays;
     Points points;
     Coefficients coefficients;
-    LaneVec3 radiance;
+    LaneVec3 radiance, diffuse;
     ArrivingLight arriving;
     LaneVec3 throughput;
+    SeenLights seen;
     uint8_t active[kBatch], missed[kBatch];
     LightScratch lights;
     ProgramScratch program;
@@ -32,7 +33,7 @@ struct Caster {
     const RenderJob& job;
     const Snapshot& snapshot;
     RayMaker maker;
-    bool wants_shadow_pass, sees_lights;
+    bool wants_shadow_pass, wants_parts, sees_lights;
 
     void tile(const TileWork& work) const;
     void block(uint32_t block_x, uint32_t block_y, const TileWork& work, Workspace& w) const;
@@ -53,13 +54,16 @@ void Caster::shade(uint32_t block_x, uint32_t block_y, uint32_t sample, Coherenc
     evaluate(snapshot, w.points, w.coefficients, w.program);
     add_ambient(w.points, w.coefficients, illumination.ambient, w.radiance);
     if (wants_shadow_pass) w.arriving.clear();
+    if (wants_parts) w.diffuse.clear();
     ShadowCounts shadows;
     add_lights(
         snapshot, illumination, coherence,
         [&](uint32_t pair, float* u, float* v) {
             random_pair(block_x, block_y, job.settings.seed, sample, pair, u, v);
         },
-        w.points, w.coefficients, w.radiance, wants_shadow_pass ? &w.arriving : nullptr, w.lights, w.program, shadows);
+        w.points, w.coefficients,
+        {w.radiance, wants_shadow_pass ? &w.arriving : nullptr, wants_parts ? &w.diffuse : nullptr}, w.lights,
+        w.program, shadows);
     job.counts->shadow_rays += shadows.rays;
     job.counts->shadow_time += shadows.nanoseconds;
     job.counts->shading_time += nanoseconds(start, Clock::now()) - shadows.nanoseconds;
@@ -67,24 +71,10 @@ void Caster::shade(uint32_t block_x, uint32_t block_y, uint32_t sample, Coherenc
 
 // Area lights that the camera sees, in front of what was hit: a lane that meets one is done.
 void Caster::add_seen_lights(Workspace& w) const {
-    const std::array<float*, 4> rgba = w.sums.combined();
+    if (!see_area_lights(snapshot.lights, true, w.rays, w.active, w.seen)) return;
     for (int i = 0; i < kBatch; ++i) {
-        if (!w.active[i]) continue;
-        const RTCRay16& ray = w.rays.packets[i >> 4].ray;
-        SeenLight nearest{ray.tfar[i & 15], {}};
-        bool any = false;
-        for (const ReadyLight& light : snapshot.lights) {
-            if (!light.visible_camera) continue;
-            const SeenLight seen = see_area_light(light, w.rays.origin.get(i), w.rays.direction.get(i));
-            if (!(seen.t > ray.tnear[i & 15] && seen.t < nearest.t)) continue;
-            nearest = seen;
-            any = true;
-        }
-        if (!any) continue;
-        const Vec3 throughput = w.throughput.get(i);
-        for (int c = 0; c < 3; ++c) rgba[c][i] += throughput[c] * nearest.radiance[c];
-        rgba[3][i] += throughput.x;
-        w.sums.add(kShadow, i, throughput);
+        if (!(w.seen.t[i] > 0)) continue;
+        add_seen_light(i, w.throughput.get(i), w.seen.radiance.get(i), w.sums);
         w.active[i] = 0;
         w.points.slot[i] = kNoSlot;
     }
@@ -97,28 +87,26 @@ void Caster::layers(uint32_t block_x, uint32_t block_y, uint32_t sample, Workspa
     std::fill_n(w.active, kBatch, uint8_t{1});
     for (int c = 0; c < 3; ++c) std::fill_n(w.throughput[c], kBatch, 1.0f);
     uint8_t first[kBatch] = {};
+    float* const ray_count = w.sums.channel(kRayCount, 0);
     uint64_t primary_rays = kBatch, primary_time = 0;
     // Packets are whole and their lanes fixed to the film in the first layer alone.
     Coherence coherence = Coherence::coherent;
     for (int layer = 0; layer < kGreatestLayers; ++layer) {
         if (layer > 0) start = Clock::now();
+        for (int i = 0; i < kBatch && ray_count; ++i) ray_count[i] += w.active[i];
         trace_primary(snapshot.rays->embree(), w.active, coherence, w.rays);
         read_hits(w.rays, w.active, w.points);
         if (sees_lights) add_seen_lights(w);
         primary_time += nanoseconds(start, Clock::now());
-        bool any_missed = false, any_hit = false;
-        for (int i = 0; i < kBatch; ++i) {
-            w.missed[i] = w.active[i] && w.points.slot[i] == kNoSlot;
-            any_missed |= w.missed[i];
-            any_hit |= w.points.slot[i] != kNoSlot;
-        }
-        if (any_missed)
+        const Found found = find_missed(w.active, w.points, w.missed);
+        if (found.any_missed)
             add_background(snapshot, w.rays.direction, w.missed, layer > 0 ? &w.throughput : nullptr,
                            job.settings.transparent, w.sums);
-        if (!any_hit) break;
+        if (!found.any_hit) break;
         shade(block_x, block_y, sample, coherence, w);
         add_surfaces({snapshot, w.points, w.coefficients, w.radiance, layer > 0 ? &w.throughput : nullptr,
-                      wants_shadow_pass ? &w.arriving : nullptr},
+                      wants_shadow_pass ? &w.arriving : nullptr, wants_parts ? &w.diffuse : nullptr,
+                      job.settings.illumination.ambient},
                      sample == 0 ? first : nullptr, w.sums);
         if (!w.points.any_holes && !w.points.any_transmission) break;
 
@@ -131,9 +119,7 @@ void Caster::layers(uint32_t block_x, uint32_t block_y, uint32_t sample, Workspa
             w.active[i] = 1;
             any_left = true;
             ++primary_rays;
-            RTCRay16& ray = w.rays.packets[i >> 4].ray;
-            ray.tnear[i & 15] = ray.tfar[i & 15] * (1 + 4e-7f) + 2 * w.points.offset[i];
-            ray.tfar[i & 15] = maker.view.clip_end;
+            pass_surface(w.rays, i, w.points, maker.view.clip_end);
         }
         if (!any_left) break;
         coherence = Coherence::incoherent;
@@ -165,11 +151,13 @@ bool ray_casting(RenderJob& job, const RenderEvents& events) {
     const Window& window = job.film->window();
     const Settings& settings = job.settings;
     if (!job.snapshot->camera) fail(TRP_ERROR_STATE, "the scene has no camera to render from");
-    const Caster caster{job, *job.snapshot,
+    const Caster caster{job,
+                        *job.snapshot,
                         RayMaker{make_view(*job.snapshot->camera, job.snapshot->origin, window.width, window.height),
                                  PixelFilter(settings.filter, settings.filter_width), settings.seed,
                                  std::max(0.125f, 1 / std::sqrt(static_cast<float>(settings.samples)))},
                         job.film->passes().has(kShadow),
+                        wants_light_parts(job.film->passes()),
                         std::any_of(job.snapshot->lights.begin(), job.snapshot->lights.end(),
                                     [](const ReadyLight& l) { return l.visible_camera; })};
     if (events.log)

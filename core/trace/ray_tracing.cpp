@@ -29,8 +29,8 @@ void find_solids_around_eye(Tracer& tracer) {
     }
     w->secondary.direction.set(0, direction);
     ray.tnear[0] = 0;
+    ray.tfar[0] = std::numeric_limits<float>::infinity();
     for (int hit = 0; hit < kMostHits; ++hit) {
-        ray.tfar[0] = std::numeric_limits<float>::infinity();
         trace_primary(snapshot.rays->embree(), w->active, Coherence::incoherent, w->secondary);
         read_hits(w->secondary, w->active, w->points);
         const uint32_t slot = w->points.slot[0];
@@ -45,11 +45,11 @@ void find_solids_around_eye(Tracer& tracer) {
             else
                 tracer.around_eye.insert(tracer.around_eye.begin(), {slot, w->points.material[0]});
         }
-        ray.tnear[0] = ray.tfar[0] * (1 + 4e-7f) + 2 * w->points.offset[0];
+        pass_surface(w->secondary, 0, w->points, std::numeric_limits<float>::infinity());
     }
 }
 
-Tracer make_tracer(const RenderJob& job, const PixelFilter& filter) {
+Tracer make_tracer(const RenderJob& job, const PixelFilter& filter, bool one_way) {
     const Window& window = job.film->window();
     const Snapshot& snapshot = *job.snapshot;
     if (!snapshot.camera) fail(TRP_ERROR_STATE, "the scene has no camera to render from");
@@ -62,12 +62,16 @@ Tracer make_tracer(const RenderJob& job, const PixelFilter& filter) {
         RayMaker{make_view(*snapshot.camera, snapshot.origin, window.width, window.height), filter, job.settings.seed,
                  std::max(0.125f, 1 / std::sqrt(static_cast<float>(job.settings.samples)))},
         job.settings.illumination,
+        one_way,
         job.film->passes().has(kShadow),
+        wants_light_parts(job.film->passes()),
         any_light([](const ReadyLight& l) { return l.visible_camera; }),
         any_light([](const ReadyLight& l) { return l.kind == ReadyLight::Kind::area; }),
         0,
         {}};
     tracer.illumination.mirrors = true;
+    // What a transparent body casts on a path's surfaces is found by the paths that go through it.
+    if (one_way) tracer.illumination.transparent_shadows = TransparentShadows::opaque;
     tracer.pixel_step = std::max(tracer.maker.view.step_x, tracer.maker.view.step_y) * tracer.maker.footprint;
     find_solids_around_eye(tracer);
     return tracer;
@@ -75,8 +79,10 @@ Tracer make_tracer(const RenderJob& job, const PixelFilter& filter) {
 
 }  // namespace
 
-bool ray_tracing(RenderJob& job, const RenderEvents& events) {
-    const Tracer tracer = make_tracer(job, PixelFilter(job.settings.filter, job.settings.filter_width));
+namespace {
+
+bool trace_film(RenderJob& job, const RenderEvents& events, bool one_way) {
+    const Tracer tracer = make_tracer(job, PixelFilter(job.settings.filter, job.settings.filter_width), one_way);
     const Window& window = job.film->window();
     if (events.log)
         events.log(fmt::format("{} x {} pixels, {} samples, {} lights, depth {}", window.w, window.h,
@@ -84,8 +90,18 @@ bool ray_tracing(RenderJob& job, const RenderEvents& events) {
     return run_tiles(job, events, [&](const TileWork& work) { tracer.tile(work); });
 }
 
+}  // namespace
+
+bool ray_tracing(RenderJob& job, const RenderEvents& events) {
+    return trace_film(job, events, false);
+}
+
+bool path_tracing(RenderJob& job, const RenderEvents& events) {
+    return trace_film(job, events, true);
+}
+
 std::vector<RayNode> trace_ray_tree(const RenderJob& job, uint32_t x, uint32_t y) {
-    Tracer tracer = make_tracer(job, PixelFilter(PixelFilter::Kind::box, 0));
+    Tracer tracer = make_tracer(job, PixelFilter(PixelFilter::Kind::box, 0), false);
     tracer.maker.view.aperture_radius = 0;
     const auto w = std::make_unique<TreeWorkspace>(*job.snapshot);
     std::vector<RayNode> tree(1);

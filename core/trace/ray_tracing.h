@@ -7,8 +7,11 @@
 
 namespace trp {
 
-// Renders into the job's film. Returns false where it was cancelled.
+// Render into the job's film. Return false where it was cancelled.
 bool ray_tracing(RenderJob& job, const RenderEvents& events);
+// Path tracing with next-event estimation (Kajiya, "The Rendering Equation", 1986): the tree, of which one branch is
+// followed at random, with diffuse and glossy reflection beside mirrors and transmission.
+bool path_tracing(RenderJob& job, const RenderEvents& events);
 
 // A ray of a pixel's tree.
 struct RayNode {

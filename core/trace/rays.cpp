@@ -184,5 +184,15 @@ void read_hits(const BlockRays& rays, const uint8_t* active, Points& points) {
     HWY_DYNAMIC_DISPATCH(read_hit_lanes)(rays, active, points);
 }
 
+Found find_missed(const uint8_t* active, const Points& points, uint8_t* missed) {
+    Found found;
+    for (int i = 0; i < kBatch; ++i) {
+        missed[i] = active[i] && points.slot[i] == kNoSlot;
+        found.any_missed |= missed[i];
+        found.any_hit |= points.slot[i] != kNoSlot;
+    }
+    return found;
+}
+
 }  // namespace trp
 #endif

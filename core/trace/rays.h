@@ -41,4 +41,17 @@ void trace_primary(RTCScene scene, const uint8_t* active, Coherence coherence, B
 // active.
 void read_hits(const BlockRays& rays, const uint8_t* active, Points& points);
 
+// What rays have found of their lanes: those that are active and have hit nothing are marked in `missed`.
+struct Found {
+    bool any_missed = false, any_hit = false;
+};
+Found find_missed(const uint8_t* active, const Points& points, uint8_t* missed);
+
+// Has a lane's ray go on behind the surface that it hit, as far as `end`.
+inline void pass_surface(BlockRays& rays, int lane, const Points& points, float end) {
+    RTCRay16& ray = rays.packets[lane >> 4].ray;
+    ray.tnear[lane & 15] = ray.tfar[lane & 15] * (1 + 4e-7f) + 2 * points.offset[lane];
+    ray.tfar[lane & 15] = end;
+}
+
 }  // namespace trp

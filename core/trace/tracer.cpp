@@ -21,20 +21,6 @@ Vec3 fading(const CompiledMaterial* filling, float distance) {
 
 }  // namespace
 
-SeenLight Tracer::nearest_light(const Vec3& origin, const Vec3& direction, float from, float to, bool by_camera) const {
-    SeenLight nearest;
-    nearest.t = to;
-    bool any = false;
-    for (const ReadyLight& light : snapshot.lights) {
-        if (light.kind != ReadyLight::Kind::area || (by_camera && !light.visible_camera)) continue;
-        const SeenLight seen = see_area_light(light, origin, direction);
-        if (!(seen.t > from && seen.t < nearest.t)) continue;
-        nearest = seen;
-        any = true;
-    }
-    return any ? nearest : SeenLight{};
-}
-
 void Tracer::record_hit(const PathRay& ray, int i, float distance, TreeWorkspace& w) const {
     RayNode& node = (*w.tree)[static_cast<size_t>(ray.node)];
     node.end = RayNode::End::surface;
@@ -48,22 +34,16 @@ void Tracer::record_hit(const PathRay& ray, int i, float distance, TreeWorkspace
 
 // Area lights that the camera sees, in front of what was hit: a lane that meets one is done.
 void Tracer::add_seen_lights(TreeWorkspace& w) const {
-    const std::array<float*, 4> rgba = w.sums.combined();
+    if (!see_area_lights(snapshot.lights, true, w.primary, w.active, w.seen)) return;
     for (int i = 0; i < kBatch; ++i) {
-        if (!w.active[i]) continue;
-        const RTCRay16& ray = w.primary.packets[i >> 4].ray;
-        const SeenLight seen = nearest_light(w.primary.origin.get(i), w.primary.direction.get(i), ray.tnear[i & 15],
-                                             ray.tfar[i & 15], true);
-        if (seen.t == 0) continue;
-        const Vec3 throughput = w.throughput.get(i);
-        for (int c = 0; c < 3; ++c) rgba[c][i] += throughput[c] * seen.radiance[c];
-        rgba[3][i] += throughput.x;
-        w.sums.add(kShadow, i, throughput);
+        if (!(w.seen.t[i] > 0)) continue;
+        const Vec3 throughput = w.throughput.get(i), radiance = w.seen.radiance.get(i);
+        add_seen_light(i, throughput, radiance, w.sums);
         if (w.tree) {
             RayNode& root = w.tree->front();
             root.end = RayNode::End::light;
-            root.distance = seen.t;
-            root.local += seen.radiance * throughput;
+            root.distance = w.seen.t[i];
+            root.local += radiance * throughput;
         }
         w.active[i] = 0;
         w.points.slot[i] = kNoSlot;
@@ -86,10 +66,12 @@ void Tracer::fade_primary(TreeWorkspace& w) const {
 // lanes that are wanted.
 void Tracer::primary(uint32_t block_x, uint32_t block_y, uint32_t sample, TreeWorkspace& w) const {
     auto start = Clock::now();
+    float* const ray_count = w.sums.channel(kRayCount, 0);
     make_primary_rays(maker, block_x, block_y, sample, w.primary);
     for (int c = 0; c < 3; ++c) std::fill_n(w.throughput[c], kBatch, 1.0f);
     std::fill_n(w.media_of, kBatch, w.start);
     std::fill_n(w.travelled, kBatch, 0.0f);
+    std::fill_n(w.lamps_sampled, kBatch, uint8_t{0});
     const bool starts_inside = w.start != Media::kOutside;
     uint8_t first[kBatch] = {};
     uint64_t primary_rays = 0, primary_time = 0;
@@ -98,19 +80,15 @@ void Tracer::primary(uint32_t block_x, uint32_t block_y, uint32_t sample, TreeWo
     for (int layer = 0; layer < kGreatestLayers; ++layer) {
         if (layer > 0) start = Clock::now();
         primary_rays += static_cast<uint64_t>(std::count(w.active, w.active + kBatch, 1));
+        for (int i = 0; i < kBatch && ray_count; ++i) ray_count[i] += w.active[i];
         trace_primary(snapshot.rays->embree(), w.active, coherence, w.primary);
         read_hits(w.primary, w.active, w.points);
         if (sees_lights) add_seen_lights(w);
         primary_time += nanoseconds(start, Clock::now());
-        bool any_missed = false, any_hit = false;
-        for (int i = 0; i < kBatch; ++i) {
-            w.missed[i] = w.active[i] && w.points.slot[i] == kNoSlot;
-            any_missed |= w.missed[i];
-            any_hit |= w.points.slot[i] != kNoSlot;
-        }
+        const Found found = find_missed(w.active, w.points, w.missed);
         if (starts_inside) fade_primary(w);
         const LaneVec3* const throughput = layer > 0 || starts_inside ? &w.throughput : nullptr;
-        if (any_missed) {
+        if (found.any_missed) {
             add_background(snapshot, w.primary.direction, w.missed, throughput, job.settings.transparent, w.sums);
             if (w.tree && snapshot.world.visible_camera) {
                 sample_background(snapshot, w.primary.direction, w.missed, w.background);
@@ -118,7 +96,7 @@ void Tracer::primary(uint32_t block_x, uint32_t block_y, uint32_t sample, TreeWo
                     if (w.missed[i]) w.tree->front().local += w.background.get(i) * w.throughput.get(i);
             }
         }
-        if (!any_hit) break;
+        if (!found.any_hit) break;
         const auto shading = Clock::now();
         locate(snapshot, job.settings.normals(), w.points);
         if (snapshot.needs_footprint)
@@ -132,28 +110,24 @@ void Tracer::primary(uint32_t block_x, uint32_t block_y, uint32_t sample, TreeWo
                 random_pair(block_x, block_y, job.settings.seed, sample, pair, u, v);
             },
             w);
-        add_surfaces({snapshot, w.points, w.coefficients, w.radiance, throughput,
-                      wants_shadow_pass ? &w.arriving : nullptr, false},
-                     sample == 0 ? first : nullptr, w.sums);
-        const bool bounces = w.points.any_mirror || w.points.any_transmission;
+        add_surfaces(
+            {snapshot, w.points, w.coefficients, w.radiance, throughput, wants_shadow_pass ? &w.arriving : nullptr,
+             wants_parts ? &w.diffuse : nullptr, illumination.ambient, false},
+            sample == 0 ? first : nullptr, w.sums);
+        const bool bounces = one_way || w.points.any_mirror || w.points.any_transmission;
         for (int i = 0; i < kBatch && (bounces || w.tree); ++i) {
             if (w.points.slot[i] == kNoSlot) continue;
             const Vec3 direction = w.primary.direction.get(i);
             const float length = direction.length(), distance = w.points.depth[i] * length;
-            PathRay ray{w.primary.origin.get(i),
-                        direction / length,
-                        w.throughput.get(i),
-                        w.primary.keys[i],
-                        sample,
-                        w.media_of[i],
-                        0,
-                        static_cast<uint16_t>(i),
-                        0,
-                        0,
-                        0,
-                        maker.view.perspective ? 0 : pixel_step,
-                        maker.view.perspective ? pixel_step / length : 0,
-                        0};
+            PathRay ray;
+            ray.origin = w.primary.origin.get(i);
+            ray.direction = direction / length;
+            ray.weight = w.throughput.get(i);
+            ray.key = w.primary.keys[i];
+            ray.sample = sample;
+            ray.medium = w.media_of[i];
+            ray.lane = static_cast<uint16_t>(i);
+            (maker.view.perspective ? ray.spread : ray.width) = pixel_step / (maker.view.perspective ? length : 1);
             if (w.tree) {
                 const Vec3 before = w.tree->front().local;
                 record_hit(ray, i, 0, w);
@@ -161,7 +135,7 @@ void Tracer::primary(uint32_t block_x, uint32_t block_y, uint32_t sample, TreeWo
                 root.local = before + (root.local - before) * ray.weight;
                 root.distance = distance;
             }
-            if (bounces) spawn(i, ray, distance, w);
+            spawn(i, ray, distance, w);
         }
         job.counts->shading_time += nanoseconds(shading, Clock::now()) - w.shadow_time;
         if (!w.points.any_holes) break;
@@ -176,9 +150,7 @@ void Tracer::primary(uint32_t block_x, uint32_t block_y, uint32_t sample, TreeWo
             w.active[i] = 1;
             any_left = true;
             if (w.coefficients.alpha[i] == 0 && !w.crosses[i]) w.media_of[i] = w.beyond[i];
-            RTCRay16& ray = w.primary.packets[i >> 4].ray;
-            ray.tnear[i & 15] = ray.tfar[i & 15] * (1 + 4e-7f) + 2 * w.points.offset[i];
-            ray.tfar[i & 15] = maker.view.clip_end;
+            pass_surface(w.primary, i, w.points, maker.view.clip_end);
         }
         if (!any_left) break;
         coherence = Coherence::incoherent;
@@ -188,9 +160,8 @@ void Tracer::primary(uint32_t block_x, uint32_t block_y, uint32_t sample, TreeWo
     job.counts->primary_time += primary_time;
 }
 
-// The last rays of the stack, as many as a batch holds.
-void Tracer::secondary(TreeWorkspace& w) const {
-    const auto start = Clock::now();
+// The last rays of the stack, as many as a batch holds, are traced. Returns their number.
+int Tracer::take_rays(TreeWorkspace& w) const {
     const auto count = static_cast<int>(std::min<size_t>(w.stack.size(), kBatch));
     std::copy(w.stack.end() - count, w.stack.end(), w.rays);
     w.stack.resize(w.stack.size() - static_cast<size_t>(count));
@@ -211,96 +182,110 @@ void Tracer::secondary(TreeWorkspace& w) const {
     }
     trace_primary(snapshot.rays->embree(), w.active, Coherence::incoherent, w.secondary);
     read_hits(w.secondary, w.active, w.points);
-    const auto traced = Clock::now();
-    job.counts->primary_time += nanoseconds(start, traced);
+    return count;
+}
 
-    const std::array<float*, 4> rgba = w.sums.combined();
-    const auto gain = [&](const PathRay& ray, const Vec3& value) {
-        for (int c = 0; c < 3; ++c) rgba[c][ray.lane] += ray.weight[c] * value[c];
-    };
-    bool any_missed = false, any_hit = false;
+void Tracer::gain(const PathRay& ray, const Vec3& value, TreeWorkspace& w) const {
+    const Vec3 gained = ray.weight * value;
+    w.sums.add(kCombined, ray.lane, gained);
+    w.sums.add(ray.part, ray.lane, gained);
+}
+
+// What absorbs the rays on their way, and the lights and the background that some of them end at.
+Found Tracer::end_rays(int count, TreeWorkspace& w) const {
+    const bool any_seen = any_area_lights && see_area_lights(snapshot.lights, false, w.secondary, w.active, w.seen);
     for (int i = 0; i < count; ++i) {
         PathRay& ray = w.rays[i];
-        float distance = w.points.slot[i] == kNoSlot ? std::numeric_limits<float>::infinity() : w.points.depth[i];
-        SeenLight light;
-        if (any_area_lights) light = nearest_light(ray.origin, ray.direction, 0, distance, false);
-        if (light.t > 0) distance = light.t;
+        const bool at_light = any_seen && w.seen.t[i] > 0;
+        const float distance = at_light                      ? w.seen.t[i]
+                               : w.points.slot[i] == kNoSlot ? std::numeric_limits<float>::infinity()
+                                                             : w.points.depth[i];
         const Vec3 faded = fading(w.media.filling(ray.medium), distance + ray.skipped);
         ray.weight = ray.weight * faded;
-        if (w.tree) {
-            RayNode& node = (*w.tree)[static_cast<size_t>(ray.node)];
-            node.weight = node.weight * faded;
+        if (RayNode* const node = w.node_of(ray)) node->weight = node->weight * faded;
+        if (!at_light) continue;
+        const Vec3 radiance = w.seen.radiance.get(i);
+        if (!ray.lamps_sampled) gain(ray, radiance, w);
+        w.points.slot[i] = kNoSlot;
+        w.active[i] = 0;
+        if (RayNode* const node = w.node_of(ray)) {
+            node->end = RayNode::End::light;
+            node->distance += distance;
+            node->local = radiance;
         }
-        if (light.t > 0) {
-            gain(ray, light.radiance);
-            w.points.slot[i] = kNoSlot;
-            w.active[i] = 0;
-        }
-        if (light.t > 0 && w.tree) {
-            RayNode& node = (*w.tree)[static_cast<size_t>(ray.node)];
-            node.end = RayNode::End::light;
-            node.distance += light.t;
-            node.local = light.radiance;
-        }
-        w.missed[i] = w.active[i] && w.points.slot[i] == kNoSlot;
-        any_missed |= w.missed[i];
-        any_hit |= w.points.slot[i] != kNoSlot;
     }
-    std::fill(w.missed + count, w.missed + kBatch, uint8_t{0});
-    if (any_missed && snapshot.world.radiance != Vec3(0, 0, 0)) {
+    const Found found = find_missed(w.active, w.points, w.missed);
+    if (found.any_missed && snapshot.world.radiance != Vec3(0, 0, 0)) {
         sample_background(snapshot, w.secondary.direction, w.missed, w.background);
         for (int i = 0; i < count; ++i) {
-            if (!w.missed[i]) continue;
-            gain(w.rays[i], w.background.get(i));
-            if (w.tree) (*w.tree)[static_cast<size_t>(w.rays[i].node)].local = w.background.get(i);
+            if (!w.missed[i] || w.rays[i].world_sampled) continue;
+            gain(w.rays[i], w.background.get(i), w);
+            if (RayNode* const node = w.node_of(w.rays[i])) node->local = w.background.get(i);
         }
     }
-    if (!any_hit) return;
+    return found;
+}
 
-    locate(snapshot, job.settings.normals(), w.points);
-    if (snapshot.needs_footprint) {
-        for (int i = 0; i < count; ++i) {
-            const Vec3 d = w.rays[i].direction;
-            const float width = w.rays[i].width + w.rays[i].spread * w.points.depth[i];
-            const Vec3 across = (std::abs(d.z) < 0.9f ? Vec3(0, 0, 1) : Vec3(1, 0, 0)).cross(d).normalized();
-            w.steps[0].set(i, across * width);
-            w.steps[1].set(i, d.cross(across) * width);
-        }
-        make_footprints({w.secondary.direction, false, Vec3(0, 0, 0), Vec3(0, 0, 0), w.steps}, w.points);
+// Where the surface has a hole, the same ray goes on behind it.
+void Tracer::pass_hole(int i, const PathRay& ray, TreeWorkspace& w) const {
+    const float alpha = w.coefficients.alpha[i];
+    if (alpha >= 1 || ray.holes >= kGreatestLayers) return;
+    PathRay behind = ray;
+    behind.weight = ray.weight * (1 - alpha);
+    behind.width += ray.spread * w.points.depth[i];
+    ++behind.holes;
+    const Vec3 normal = w.points.geometric_normal.get(i);
+    behind.origin = w.points.position.get(i) - normal * w.points.offset[i];
+    behind.skipped = std::abs(normal.dot(ray.direction)) * w.points.offset[i];
+    if (alpha == 0 && !w.crosses[i]) behind.medium = w.beyond[i];
+    if (w.tree) {
+        RayNode node;
+        node.kind = RayNode::Kind::transmission;
+        node.parent = ray.node;
+        node.origin = behind.origin;
+        node.direction = behind.direction;
+        node.weight = Vec3(1, 1, 1) * (1 - alpha);
+        behind.node = static_cast<int32_t>(w.tree->size());
+        w.tree->push_back(node);
     }
-    shade(
-        Coherence::incoherent,
-        [&](uint32_t pair, float* u, float* v) { random_pair_of(w.keys, w.samples, pair, u, v); }, w);
-    for (int i = 0; i < count; ++i) {
-        if (w.points.slot[i] == kNoSlot) continue;
-        const PathRay& ray = w.rays[i];
-        const float alpha = w.coefficients.alpha[i];
-        gain(ray, w.radiance.get(i) * alpha);
-        if (w.tree) record_hit(ray, i, w.points.depth[i], w);
-        if (alpha < 1 && ray.holes < kGreatestLayers) {
-            // The same ray goes on behind.
-            PathRay behind = ray;
-            behind.weight = ray.weight * (1 - alpha);
-            behind.width += ray.spread * w.points.depth[i];
-            ++behind.holes;
-            const Vec3 normal = w.points.geometric_normal.get(i);
-            behind.origin = w.points.position.get(i) - normal * w.points.offset[i];
-            behind.skipped = std::abs(normal.dot(ray.direction)) * w.points.offset[i];
-            if (alpha == 0 && !w.crosses[i]) behind.medium = w.beyond[i];
-            if (w.tree) {
-                RayNode node;
-                node.kind = RayNode::Kind::transmission;
-                node.parent = ray.node;
-                node.origin = behind.origin;
-                node.direction = behind.direction;
-                node.weight = Vec3(1, 1, 1) * (1 - alpha);
-                behind.node = static_cast<int32_t>(w.tree->size());
-                w.tree->push_back(node);
+    const float greatest = std::max({behind.weight.x, behind.weight.y, behind.weight.z});
+    if (greatest > 0 && (one_way || greatest >= job.settings.trace.least_weight)) w.stack.push_back(behind);
+}
+
+void Tracer::secondary(TreeWorkspace& w) const {
+    const auto start = Clock::now();
+    const int count = take_rays(w);
+    const auto traced = Clock::now();
+    job.counts->primary_time += nanoseconds(start, traced);
+    w.shadow_time = 0;
+    if (float* const rays = w.sums.channel(kRayCount, 0))
+        for (int i = 0; i < count; ++i) ++rays[w.rays[i].lane];
+    if (float* const depth = w.sums.channel(kTreeDepth, 0))
+        for (int i = 0; i < count; ++i)
+            depth[w.rays[i].lane] = std::max(depth[w.rays[i].lane], static_cast<float>(w.rays[i].depth()));
+    if (end_rays(count, w).any_hit) {
+        locate(snapshot, job.settings.normals(), w.points);
+        if (snapshot.needs_footprint) {
+            for (int i = 0; i < count; ++i) {
+                const Vec3 d = w.rays[i].direction;
+                const float width = w.rays[i].width + w.rays[i].spread * w.points.depth[i];
+                const Vec3 across = (std::abs(d.z) < 0.9f ? Vec3(0, 0, 1) : Vec3(1, 0, 0)).cross(d).normalized();
+                w.steps[0].set(i, across * width);
+                w.steps[1].set(i, d.cross(across) * width);
             }
-            if (std::max({behind.weight.x, behind.weight.y, behind.weight.z}) >= job.settings.trace.least_weight)
-                w.stack.push_back(behind);
+            make_footprints({w.secondary.direction, false, Vec3(0, 0, 0), Vec3(0, 0, 0), w.steps}, w.points);
         }
-        if (w.points.any_mirror || w.points.any_transmission) spawn(i, ray, w.points.depth[i], w);
+        for (int i = 0; i < count; ++i) w.lamps_sampled[i] = w.rays[i].lamps_sampled;
+        shade(
+            Coherence::incoherent,
+            [&](uint32_t pair, float* u, float* v) { random_pair_of(w.keys, w.samples, pair, u, v); }, w);
+        for (int i = 0; i < count; ++i) {
+            if (w.points.slot[i] == kNoSlot) continue;
+            gain(w.rays[i], w.radiance.get(i) * w.coefficients.alpha[i], w);
+            if (w.tree) record_hit(w.rays[i], i, w.points.depth[i], w);
+            pass_hole(i, w.rays[i], w);
+            spawn(i, w.rays[i], w.points.depth[i], w);
+        }
     }
     job.counts->shading_time += nanoseconds(traced, Clock::now()) - w.shadow_time;
 }
@@ -336,8 +321,9 @@ void Tracer::tile(const TileWork& work) const {
     const auto w = std::make_unique<TreeWorkspace>(snapshot);
     for (uint32_t y = work.block_y0; y < work.block_y1; ++y)
         for (uint32_t x = work.block_x0; x < work.block_x1; ++x) block(x, y, work, *w);
-    job.counts->reflection_rays += w->reflection_rays;
-    job.counts->transmission_rays += w->transmission_rays;
+    job.counts->reflection_rays += w->rays_of[static_cast<int>(Way::reflection)];
+    job.counts->transmission_rays += w->rays_of[static_cast<int>(Way::transmission)];
+    job.counts->diffuse_rays += w->rays_of[static_cast<int>(Way::diffuse)];
 }
 
 }  // namespace trp

@@ -4,26 +4,38 @@
 // holds are taken at a time, whatever pixel, kind or depth they are of. So batches are full, and the stack holds no
 // more than a batch for each level of the tree. A ray carries what its pixel gains from it: each pixel is summed as its
 // rays end.
+//
+// A path is a tree of which only one branch is followed at each surface, chosen at random by what it would count for,
+// and to which diffuse and glossy reflection have been added.
 #pragma once
 
 #include "film/surface_passes.h"
 #include "trace/bounce.h"
 #include "trace/media.h"
 #include "trace/ray_tracing.h"
-#include "trace/rays.h"
+#include "trace/seen_lights.h"
 
 namespace trp {
 
+// How a ray goes on from a surface.
+enum class Way : uint8_t { reflection, transmission, diffuse };
+inline constexpr int kWays = 3;
+
 struct PathRay {
-    Vec3 origin, direction;  // unit
-    Vec3 weight;             // of what it sees, in its pixel
-    uint32_t key, sample;    // of its random sequence
-    Media::State medium;
-    int32_t node;  // of the tree that is recorded
-    uint16_t lane;
-    uint16_t reflections, transmissions, holes;  // on the way to it
-    float width, spread;                         // of its footprint where it starts, and how that grows with distance
-    float skipped;                               // of its way: its start is off the surface
+    Vec3 origin{0, 0, 0}, direction{0, 0, 1};  // unit
+    Vec3 weight{1, 1, 1};                      // of what it sees, in its pixel
+    uint32_t key = 0, sample = 0;              // of its random sequence
+    Media::State medium = Media::kOutside;
+    int32_t node = 0;  // of the tree that is recorded
+    uint16_t lane = 0;
+    uint16_t ways[kWays] = {0, 0, 0}, holes = 0;  // on the way to it
+    PassId part = kCombined;                      // the pass that gains what its pixel gains, by the first way
+    // Where it starts, these lights have been counted already.
+    bool lamps_sampled = false, world_sampled = false;
+    float width = 0, spread = 0;  // of its footprint where it starts; its growth with distance
+    float skipped = 0;            // of its way: its start is off the surface
+
+    uint32_t depth() const { return uint32_t{ways[0]} + ways[1] + ways[2]; }
 };
 
 // What a thread works with; large, so made once for a tile.
@@ -35,15 +47,17 @@ struct TreeWorkspace {
     BlockRays primary, secondary;
     Points points;
     Coefficients coefficients;
-    LaneVec3 radiance, background, steps[2];
+    LaneVec3 radiance, diffuse, background, steps[2];
     Bounces bounces;
     ArrivingLight arriving;
     LaneVec3 throughput;
-    uint8_t active[kBatch], missed[kBatch];
+    SeenLights seen;
+    uint8_t active[kBatch], missed[kBatch], lamps_sampled[kBatch];
     alignas(64) uint32_t keys[kBatch], samples[kBatch];
     Media::State media_of[kBatch], beyond[kBatch];
-    float travelled[kBatch];  // by primary rays that start in a solid
-    uint8_t crosses[kBatch];  // the surface of a solid that is there
+    alignas(64) Lanes turn_u, turn_v, choice, survival;  // a path's random numbers at its surfaces
+    float travelled[kBatch];                             // by primary rays that start in a solid
+    uint8_t crosses[kBatch];                             // the surface of a solid that is there
     LightScratch lights;
     ProgramScratch program;
     BlockSums sums;
@@ -53,9 +67,10 @@ struct TreeWorkspace {
     std::vector<PathRay> stack;
     PathRay rays[kBatch];
 
-    uint64_t reflection_rays = 0, transmission_rays = 0;
+    uint64_t rays_of[kWays] = {};
     uint64_t shadow_time = 0;              // of the last batch
     std::vector<RayNode>* tree = nullptr;  // null: nothing is recorded
+    RayNode* node_of(const PathRay& ray) const { return tree ? &(*tree)[static_cast<size_t>(ray.node)] : nullptr; }
 };
 
 // A render's constants.
@@ -64,24 +79,36 @@ struct Tracer {
     const Snapshot& snapshot;
     RayMaker maker;
     Illumination illumination;
-    bool wants_shadow_pass, sees_lights, any_area_lights;
+    bool one_way;  // paths, not trees
+    bool wants_shadow_pass, wants_parts, sees_lights, any_area_lights;
     float pixel_step;                                       // of a primary ray's footprint, at depth 1
     std::vector<std::pair<uint32_t, uint32_t>> around_eye;  // slots and materials of the solids that the eye is in
 
+    // Of blocks.
     void tile(const TileWork& work) const;
     void begin_block(uint32_t block_x, uint32_t block_y, TreeWorkspace& w) const;
     void block(uint32_t block_x, uint32_t block_y, const TileWork& work, TreeWorkspace& w) const;
-    void primary(uint32_t block_x, uint32_t block_y, uint32_t sample, TreeWorkspace& w) const;
-    void secondary(TreeWorkspace& w) const;
     void drain(size_t least, TreeWorkspace& w) const;
-    void shade(Coherence coherence, const RandomPairs& random, TreeWorkspace& w) const;
-    void cross_surfaces(TreeWorkspace& w) const;
-    void spawn(int i, const PathRay& parent, float distance, TreeWorkspace& w) const;
-    void push(const PathRay& parent, int i, RayNode::Kind kind, const Vec3& direction, const Vec3& weight,
-              TreeWorkspace& w) const;
+
+    // Of primary rays.
+    void primary(uint32_t block_x, uint32_t block_y, uint32_t sample, TreeWorkspace& w) const;
     void add_seen_lights(TreeWorkspace& w) const;
     void fade_primary(TreeWorkspace& w) const;
-    SeenLight nearest_light(const Vec3& origin, const Vec3& direction, float from, float to, bool by_camera) const;
+
+    // Of the rays on the stack.
+    void secondary(TreeWorkspace& w) const;
+    int take_rays(TreeWorkspace& w) const;
+    Found end_rays(int count, TreeWorkspace& w) const;
+    void gain(const PathRay& ray, const Vec3& value, TreeWorkspace& w) const;
+    void pass_hole(int i, const PathRay& ray, TreeWorkspace& w) const;
+
+    // At surfaces.
+    void shade(Coherence coherence, const RandomPairs& random, TreeWorkspace& w) const;
+    void cross_surfaces(TreeWorkspace& w) const;
+    void roughen(TreeWorkspace& w) const;
+    void spawn(int i, const PathRay& parent, float distance, TreeWorkspace& w) const;
+    void spawn_one(int i, const PathRay& parent, TreeWorkspace& w) const;
+    void push(const PathRay& parent, int i, Way way, const Vec3& direction, const Vec3& weight, TreeWorkspace& w) const;
     void record_hit(const PathRay& ray, int i, float distance, TreeWorkspace& w) const;
 };
 

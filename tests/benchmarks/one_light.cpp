@@ -18,6 +18,13 @@ float squared_distance(const float* rows, const std::array<float, 3>& point) {
 
 }  // namespace
 
+triptych::cli::LoadedScene load_complete(const std::string& path, uint32_t film_width, uint32_t film_height,
+                                         uint32_t threads) {
+    triptych::cli::LoadedScene loaded = triptych::cli::load_gltf(path, {}, threads);
+    triptych::cli::complete_scene(loaded, film_width, film_height, threads);
+    return loaded;
+}
+
 triptych::cli::LoadedScene load_with_one_light(const std::string& path, const std::array<float, 3>& light,
                                                uint32_t film_width, uint32_t film_height, uint32_t threads) {
     using triptych::cli::check;

@@ -8,6 +8,10 @@
 
 namespace trp_bench {
 
+// Reads and commits the scene as it is.
+triptych::cli::LoadedScene load_complete(const std::string& path, uint32_t film_width, uint32_t film_height,
+                                         uint32_t threads);
+
 // Reads and commits the scene. `light`: its place in world space. The film's shape is for a file without a camera.
 // Throws as load_gltf does.
 triptych::cli::LoadedScene load_with_one_light(const std::string& path, const std::array<float, 3>& light,

@@ -100,3 +100,18 @@ def test_switch_shows_the_methods_default(scene):
     group.method = "ray_casting"
     group.shadows = False
     assert not group.shadows and settings.changed(scene)["shadows"] == "off"
+
+
+def test_a_number_shows_what_the_method_has():
+    scene = bpy.data.scenes.new("Numbers")
+    group = scene.triptych
+    shown = {}
+    for method in ("ray_tracing", "path_tracing"):
+        group.method = method
+        shown[method] = group.samples, group.trace_depth
+    assert shown == {"ray_tracing": (16, 8), "path_tracing": (128, 64)}
+    assert "samples" not in settings.changed(scene)
+    group.samples = 5
+    assert group.samples == 5 and settings.changed(scene)["samples"] == "5"
+    group.method = "ray_tracing"
+    assert group.samples == 5, "once set, for every method"

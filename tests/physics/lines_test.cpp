@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "support/abi.h"
+#include "support/bodies.h"
 
 namespace trp_test {
 namespace {
@@ -29,17 +29,6 @@ uint32_t loose_edge(Scene& scene, Vec a, Vec b) {
     for (const Vec& p : {a, b}) m.positions.insert(m.positions.end(), p.begin(), p.end());
     const std::vector<uint32_t> edge = {0, 1};
     return scene.instance(scene.mesh(m, [&](TrpMeshDesc& d) { d.edges = indices(edge, 2); }));
-}
-
-// Eight corners, six quads.
-MeshData box(Vec low, Vec high) {
-    MeshData m;
-    for (int k = 0; k < 8; ++k)
-        m.positions.insert(m.positions.end(),
-                           {k & 1 ? high[0] : low[0], k & 2 ? high[1] : low[1], k & 4 ? high[2] : low[2]});
-    m.corners = {0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5};
-    m.offsets = {0, 4, 8, 12, 16, 20, 24};
-    return m;
 }
 
 // A picture seen from above, 10 pixels to the metre, whose middle is at the world's origin.

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <random>
 
-#include "support/abi.h"
+#include "support/bodies.h"
 
 namespace trp_test {
 namespace {
@@ -11,11 +11,6 @@ const Settings kOneRay = {{"samples", "1"},
                           {"film.filter_width", "0"},
                           {"trace.least_weight", "0"},
                           {"shading.transparent_shadows", "opaque"}};
-
-Settings with(Settings settings, const Settings& more) {
-    settings.insert(settings.end(), more.begin(), more.end());
-    return settings;
-}
 
 Image traced(Scene& scene, uint32_t width, uint32_t height, const Settings& settings) {
     scene.commit();
@@ -204,38 +199,6 @@ TEST(RayTracing, IsTheEquationOnRandomScenes) {
 }
 
 // ---- optics
-
-uint32_t glass(Scene& scene, float ior, const std::function<void(TrpMaterialDesc&)>& change = {}) {
-    return scene.material([&](TrpMaterialDesc& d) {
-        d.diffuse = {{0, 0, 0}, TRP_NO_NODE};
-        d.mirror = d.transmission = {{1, 1, 1}, TRP_NO_NODE};
-        d.mirror_is_specular = 0;
-        d.ior = {{ior, 0, 0}, TRP_NO_NODE};
-        d.fresnel = 1;
-        if (change) change(d);
-    });
-}
-uint32_t glowing(Scene& scene, float radiance) {
-    return scene.material([&](TrpMaterialDesc& d) {
-        d.diffuse = {{0, 0, 0}, TRP_NO_NODE};
-        d.emission = {{radiance, radiance, radiance}, TRP_NO_NODE};
-    });
-}
-
-// A closed box with the faces outwards.
-MeshData box(Vec low, Vec high) {
-    MeshData m;
-    for (int k = 0; k < 8; ++k)
-        for (int c = 0; c < 3; ++c) m.positions.push_back(k >> c & 1 ? high[c] : low[c]);
-    m.corners = {0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5};
-    m.offsets = {0, 4, 8, 12, 16, 20, 24};
-    return m;
-}
-MeshData inwards(MeshData m) {
-    for (size_t f = 0; f + 1 < m.offsets.size(); ++f)
-        std::reverse(m.corners.begin() + m.offsets[f], m.corners.begin() + m.offsets[f + 1]);
-    return m;
-}
 
 // What a single ray sees.
 double seen(Scene& scene, Vec from, Vec to, const Settings& settings = {}) {

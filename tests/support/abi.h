@@ -223,6 +223,11 @@ class Scene {
 
 using Settings = std::vector<std::pair<const char*, std::string>>;
 
+inline Settings with(Settings settings, const Settings& more) {
+    settings.insert(settings.end(), more.begin(), more.end());
+    return settings;
+}
+
 // A picture of one pass: row 0 at the bottom.
 struct Image {
     uint32_t width = 0, height = 0, channels = 0;
