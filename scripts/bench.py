@@ -60,6 +60,7 @@ BENCHMARKS = [
     ray_tracing("gallery", 2),
     ray_tracing("still_life", 2),
     ray_tracing("whitted_spheres", 4),
+    Benchmark(["lamps"], "lamps_bench", "", ["--goal", "10"]),
     Benchmark(
         ["load.tower_of_meshes", "memory.tower_of_meshes"],
         "load_bench",

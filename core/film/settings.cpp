@@ -73,6 +73,13 @@ const SettingRow kSettings[] = {
          constexpr int32_t kOf[] = {-1, TRP_FALLOFF_CONSTANT, TRP_FALLOFF_LINEAR, TRP_FALLOFF_PHYSICAL};
          s.illumination.falloff = kOf[static_cast<int>(*v)];
      }},
+    {TRP_TYPE_FLOAT, "shading.least_light", "Least light",
+     "Lamps are left out where less than this would arrive of their light, I_L; with hundreds of lamps in a large "
+     "scene "
+     "that saves most of the time, and darkens each place by at most this much for each lamp left out. 0 leaves out "
+     "none",
+     "W/(m² sr)", "0", 0, 1e6, nullptr, kSurfaceMethods, "",
+     [](Settings& s, const double* v) { s.illumination.least_light = static_cast<float>(*v); }},
     {TRP_TYPE_ENUM, "film.filter", "Pixel filter", "How samples are weighed around a pixel", "", "blackman_harris", 0,
      0, kFilters, "*", "", [](Settings& s, const double* v) { s.filter = static_cast<PixelFilter::Kind>(*v); }},
     {TRP_TYPE_FLOAT, "film.filter_width", "Filter width",

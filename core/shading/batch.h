@@ -67,6 +67,8 @@ struct Coefficients {
 
 // Light that would arrive at each point from one light, if nothing were in between.
 struct LightSamples {
+    uint32_t packets;  // a bit to each 16 lanes: the others have no samples, as nothing reaches them
+    bool reaches(int lane) const { return packets >> (lane >> 4) & 1; }
     LaneVec3 direction;          // unit, towards the light
     alignas(64) Lanes distance;  // to the sampled point; huge for sun and world
     LaneVec3 light;              // I_L = E⊥/π, divided by the density of the sample; 0 where none can arrive

@@ -33,6 +33,7 @@ void add_light_lanes(Specular specular, const Points& points, const Coefficients
     const hn::RebindToUnsigned<decltype(d)> du;
     using V = hn::Vec<decltype(d)>;
     for (int i = 0; i < kBatch; i += static_cast<int>(hn::Lanes(d))) {
+        if (!samples.reaches(i)) continue;
         const auto hit = hn::RebindMask(d, hn::Ne(hn::Load(du, points.slot + i), hn::Set(du, kNoSlot)));
         const Vector3<V> n = load3(d, points.normal, i), l = load3(d, samples.direction, i);
         const V n_dot_l = hn::Max(dot3(n, l), hn::Zero(d));

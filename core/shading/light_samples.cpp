@@ -207,9 +207,8 @@ void sample_lanes(D d, const ReadyLight& light, int32_t falloff, const Points& p
 void sample_batch(const ReadyLight& light, int32_t falloff, const Points& points, const float* u, const float* v,
                   LightSamples& samples) {
     const hn::ScalableTag<float> d;
-    const hn::RebindToUnsigned<decltype(d)> du;
     for (int i = 0; i < kBatch; i += static_cast<int>(hn::Lanes(d))) {
-        if (hn::AllTrue(du, hn::Eq(hn::Load(du, points.slot + i), hn::Set(du, kNoSlot)))) continue;
+        if (!samples.reaches(i)) continue;
         sample_lanes(d, light, falloff, points, i, hn::Load(d, u + i), hn::Load(d, v + i), samples);
     }
 }

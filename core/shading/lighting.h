@@ -15,6 +15,7 @@ struct Illumination {
     TransparentShadows transparent_shadows = TransparentShadows::opaque;
     bool mirrors = false;   // I_R is traced: lights that rays can hit have no highlight on mirrors
     Vec3 ambient{0, 0, 0};  // I_A
+    float least_light = 0;  // of I_L: lamps that give a point less give it nothing
 };
 
 // Gives numbers in [0, 1) of the batch's random sequence by their pair: u, v[kBatch].

@@ -59,6 +59,9 @@ struct ReadyLight {
     Affine texture_from_world;  // a rotation
 
     bool is_hit_by_rays() const { return kind == Kind::area || kind == Kind::surface; }
+    // A bound of I_L, and the radius of a ball that holds the light; for lamps with a place.
+    float strength() const;
+    float extent() const;
     // Whether two numbers of the random sequence are used.
     bool is_sampled() const {
         return !((kind == Kind::point || kind == Kind::spot) && radius == 0) &&
@@ -71,8 +74,12 @@ using LightList = std::vector<ReadyLight>;
 // The list of a snapshot whose surfaces, materials and lamps are ready.
 LightList make_lights(const Snapshot& snapshot);
 
-// Light samples of one light for all lanes, by u and v in [0, 1) (unused where the light is not sampled).
-// `falloff` overrides the light's own where it is not negative.
+// The packets of 16 lanes, a bit to each, that light can reach: not those that it lies behind, or that lie behind it,
+// outside its cone, or so far away that less than `least` of I_L would arrive. `falloff` as below.
+uint32_t reached_packets(const ReadyLight& light, int32_t falloff, float least, const Points& points);
+
+// Light samples of one light for the lanes of samples.packets, by u and v in [0, 1) (unused where the light is not
+// sampled). `falloff` overrides the light's own where it is not negative.
 void sample_light(const Snapshot& snapshot, const ReadyLight& light, int32_t falloff, const Points& points,
                   const float* u, const float* v, LightSamples& samples, ProgramScratch& scratch);
 

@@ -39,8 +39,7 @@ bool make_shadow_packet(const Points& points, const LightSamples& samples, unsig
         hn::Store(l.y, d, ray.dir_y + k);
         hn::Store(l.z, d, ray.dir_z + k);
         hn::Store(zero, d, ray.tnear + k);
-        // Short of the light, so that an emitting surface does not shade itself.
-        hn::Store(hn::Mul(hn::Load(d, samples.distance + i), hn::Set(d, 0.9999f)), d, ray.tfar + k);
+        hn::Store(hn::Mul(hn::Load(d, samples.distance + i), hn::Set(d, kShortOfLight)), d, ray.tfar + k);
         hn::Store(zero, d, ray.time + k);
         hn::Store(hn::Set(du, mask), du, ray.mask + k);
         hn::Store(hn::Zero(du), du, ray.flags + k);
@@ -83,60 +82,70 @@ Vec3 passing(const Snapshot& snapshot, const Points& hits, const Coefficients& c
     return one * (1 - alpha) + coefficients.transmission.get(i) * alpha;
 }
 
-// Multiplies visibility by what the surfaces with holes or transmission on the way let through.
+// Multiplies visibility by what the surfaces with holes or transmission on the way let through, layer by layer; the
+// lanes whose way is still open are kept close together, so that few cost little.
 uint64_t filter_shadows(const Snapshot& snapshot, const Points& points, const LightSamples& samples,
                         TransparentShadows transparent, LaneVec3& visibility, ShadowScratch& shadow,
                         ProgramScratch& program) {
     const unsigned mask =
         transparent == TransparentShadows::opaque ? kFiltersShadow : kFiltersShadow | kTransmitsShadow;
-    const auto is_open = [&](int i) { return visibility.get(i) != Vec3(0, 0, 0); };
-    Lanes reached;  // ray parameter that each lane has come to
-    std::fill_n(reached, kBatch, 0.0f);
-    shadow.points.clear_footprints();
+    Points& hits = shadow.points;
+    hits.clear_footprints();
+    int open[kBatch], count = 0;  // lanes
+    Lanes reached;                // ray parameter that each has come to
+    for (int i = 0; i < kBatch; ++i)
+        if (visibility.get(i) != Vec3(0, 0, 0)) open[count++] = i, reached[i] = 0;
     uint64_t rays = 0;
-    for (int layer = 0; layer < kGreatestLayers; ++layer) {
-        bool any = false;
-        Points& hits = shadow.points;
-        for (int first = 0; first < kBatch; first += 16) {
-            alignas(64) RTCRayHit16 packet;
-            alignas(64) int valid[16];
-            HWY_DYNAMIC_DISPATCH(make_shadow_packet)(points, samples, mask, first, packet.ray, valid);
-            for (int k = 0; k < 16; ++k) {
-                const int i = first + k;
-                if (!is_open(i)) valid[k] = 0;
-                rays += valid[k] != 0;
+    for (int layer = 0; layer < kGreatestLayers && count > 0; ++layer) {
+        rays += static_cast<uint64_t>(count);
+        int hit_count = 0;
+        for (int first = 0; first < count; first += 16) {
+            alignas(64) RTCRayHit16 packet = {};
+            alignas(64) int valid[16] = {};
+            const int in_packet = std::min(count - first, 16);
+            for (int k = 0; k < in_packet; ++k) {
+                const int i = open[first + k];
+                const Vec3 origin = points.position.get(i) + points.geometric_normal.get(i) * points.offset[i],
+                           direction = samples.direction.get(i);
+                valid[k] = -1;
+                packet.ray.org_x[k] = origin.x, packet.ray.org_y[k] = origin.y, packet.ray.org_z[k] = origin.z;
+                packet.ray.dir_x[k] = direction.x, packet.ray.dir_y[k] = direction.y, packet.ray.dir_z[k] = direction.z;
                 packet.ray.tnear[k] = reached[i];
+                packet.ray.tfar[k] = samples.distance[i] * kShortOfLight;
+                packet.ray.mask[k] = mask;
                 packet.hit.geomID[k] = packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
             }
             intersect16(snapshot.rays->embree(), valid, packet, Coherence::incoherent);
-            for (int k = 0; k < 16; ++k) {
-                const int i = first + k;
-                const bool hit = valid[k] && packet.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID;
-                hits.slot[i] = !hit                                                 ? kNoSlot
-                               : packet.hit.instID[0][k] != RTC_INVALID_GEOMETRY_ID ? packet.hit.instID[0][k]
-                                                                                    : packet.hit.geomID[k];
-                hits.triangle[i] = packet.hit.primID[k];
-                hits.b1[i] = packet.hit.u[k];
-                hits.b2[i] = packet.hit.v[k];
-                hits.time[i] = points.time[i];
-                hits.to_viewer.set(i, -samples.direction.get(i));
+            for (int k = 0; k < in_packet; ++k) {
+                if (packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) continue;
+                const int i = open[first + k], to = hit_count++;
+                const unsigned instance = packet.hit.instID[0][k];
+                hits.slot[to] = instance != RTC_INVALID_GEOMETRY_ID ? instance : packet.hit.geomID[k];
+                hits.triangle[to] = packet.hit.primID[k];
+                hits.b1[to] = packet.hit.u[k];
+                hits.b2[to] = packet.hit.v[k];
+                hits.time[to] = points.time[i];
+                hits.to_viewer.set(to, -samples.direction.get(i));
                 // Past the surface by as much as rounding can place it wrong.
-                if (hit) reached[i] = packet.ray.tfar[k] * (1 + 4e-7f);
-                any |= hit;
+                reached[i] = packet.ray.tfar[k] * (1 + 4e-7f);
+                open[to] = i;  // no later than where it was
             }
         }
-        if (!any) return rays;
+        count = 0;
+        if (hit_count == 0) return rays;
+        std::fill(hits.slot + hit_count, hits.slot + kBatch, kNoSlot);
         locate(snapshot, NormalChoice::mesh, hits);
         evaluate(snapshot, hits, shadow.coefficients, program);
-        for (int i = 0; i < kBatch; ++i) {
-            if (hits.slot[i] == kNoSlot) continue;
-            const Vec3 left = visibility.get(i) * passing(snapshot, hits, shadow.coefficients, i, transparent);
-            visibility.set(i, std::max({left.x, left.y, left.z}) < 1e-4f ? Vec3(0, 0, 0) : left);
-            reached[i] += 2 * hits.offset[i];
+        for (int at = 0; at < hit_count; ++at) {
+            const int i = open[at];
+            const Vec3 left = visibility.get(i) * passing(snapshot, hits, shadow.coefficients, at, transparent);
+            const bool goes_on = std::max({left.x, left.y, left.z}) >= 1e-4f;
+            visibility.set(i, goes_on ? left : Vec3(0, 0, 0));
+            reached[i] += 2 * hits.offset[at];
+            if (goes_on) open[count++] = i;
         }
     }
-    for (int i = 0; i < kBatch; ++i)
-        if (shadow.points.slot[i] != kNoSlot) visibility.set(i, {0, 0, 0});
+    for (int at = 0; at < count; ++at) visibility.set(open[at], {0, 0, 0});
     return rays;
 }
 
@@ -152,7 +161,8 @@ uint64_t trace_shadows(const Snapshot& snapshot, const Points& points, const Lig
     for (int first = 0; first < kBatch; first += 16) {
         alignas(64) RTCRay16 ray;
         alignas(64) int valid[16];
-        if (!HWY_DYNAMIC_DISPATCH(make_shadow_packet)(points, samples, mask, first, ray, valid)) {
+        if (!samples.reaches(first) ||
+            !HWY_DYNAMIC_DISPATCH(make_shadow_packet)(points, samples, mask, first, ray, valid)) {
             for (int c = 0; c < 3; ++c) std::fill_n(visibility[c] + first, 16, 0.0f);
             continue;
         }

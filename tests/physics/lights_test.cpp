@@ -1,4 +1,6 @@
 // Closed forms: what each kind of light leaves on a plane, with and without something in the way.
+#include <random>
+
 #include "support/abi.h"
 
 namespace trp_test {
@@ -280,6 +282,102 @@ TEST(Shadows, TransmissionColoursThem) {
             EXPECT_NEAR(lit("none", c), 1, 1e-4) << method;
         }
     }
+}
+
+// Lamps that are passed over where they cannot matter are missed nowhere: dozens of narrow spots and of area lights
+// that look all ways, against the sum over all of them, pixel by pixel.
+TEST(Lights, NoneIsMissed) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<float> number(-1, 1);
+    Scene scene;
+    const uint32_t white = scene.diffuse(1, 1, 1);
+    scene.object(floor_square(6), white);
+    scene.object(sphere({0.5f, -0.3f, 1}, 0.9f, 48), white);
+    scene.camera(look_at({3, -9, 7}, {0, 0, 0}));
+    struct Lamp {
+        bool is_spot;
+        Vec at, down, x, y;  // unit; area: half the sides
+        float cosine;
+    };
+    std::vector<Lamp> lamps;
+    for (int k = 0; k < 60; ++k) {
+        const Vec at = {5 * number(random), 5 * number(random), 2 + 1.5f * number(random)};
+        const Vec to = at + Vec{number(random), number(random), number(random) - 0.5f};
+        const Transform place = look_at(at, to, {0.3f, 0.2f, 0.9f});
+        Lamp lamp{k % 2 == 0, at, unit(to - at), {place[0], place[4], place[8]}, {place[1], place[5], place[9]}, 0};
+        const float angle = 0.3f + 0.8f * std::abs(number(random));
+        lamp.cosine = std::cos(angle / 2);
+        scene.light(lamp.is_spot ? TRP_LIGHT_SPOT : TRP_LIGHT_AREA, {5, 5, 5}, place, [&](TrpLightDesc& d) {
+            d.radius = d.blend = 0;
+            if (lamp.is_spot) d.angle = angle;
+            d.size[0] = 0.6f, d.size[1] = 0.4f;
+        });
+        lamps.push_back(lamp);
+    }
+    scene.commit();
+    Render render(scene, 96, 64,
+                  {{"samples", "64"}, {"film.filter_width", "0"}, {"shadows", "off"}, {"shading.specular", "none"}},
+                  {"Position", "Normal", "Depth"});
+    const Image image = render.run().read(), positions = render.read("Position"), normals = render.read("Normal"),
+                depth = render.read("Depth");
+    constexpr int kCells = 12;
+    for (uint32_t y = 0; y < 64; ++y)
+        for (uint32_t x = 0; x < 96; ++x) {
+            if (*depth.at(x, y) > 1e9f) continue;
+            const float *const p = positions.at(x, y), *const normal = normals.at(x, y);
+            const Vec at = {p[0], p[1], p[2]}, n = {normal[0], normal[1], normal[2]};
+            double spots = 0, areas = 0;
+            bool at_an_edge = false;
+            const auto given_by = [&](Vec from) {
+                const Vec to = from - at, l = unit(to);
+                return std::pair(std::max(dot(n, l), 0.0f) / (static_cast<float>(kPi) * dot(to, to)), dot(l, n));
+            };
+            for (const Lamp& lamp : lamps) {
+                if (lamp.is_spot) {
+                    const float cosine = dot(unit(at - lamp.at), lamp.down);
+                    at_an_edge |= std::abs(cosine - lamp.cosine) < 1e-4f;
+                    if (cosine > lamp.cosine) spots += 5 * given_by(lamp.at).first;
+                    continue;
+                }
+                for (int i = 0; i < kCells; ++i)
+                    for (int j = 0; j < kCells; ++j) {
+                        const Vec from = lamp.at + lamp.x * (0.6f * ((static_cast<float>(i) + 0.5f) / kCells - 0.5f)) +
+                                         lamp.y * (0.4f * ((static_cast<float>(j) + 0.5f) / kCells - 0.5f));
+                        const float facing = std::max(dot(unit(at - from), lamp.down), 0.0f);
+                        areas += 5 * 0.24 / (kCells * kCells) * facing * given_by(from).first;
+                    }
+            }
+            if (at_an_edge) continue;
+            ASSERT_NEAR(image.at(x, y)[0], spots + areas, 2e-3 + 0.01 * areas + 1e-4 * spots) << x << ", " << y;
+        }
+}
+
+// Lamps whose light is less than what is asked for are left out, and no more is lost than that.
+TEST(Lights, TheLeastLightBoundsWhatIsLost) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> number(-1, 1);
+    Scene scene;
+    scene.object(floor_square(20), scene.diffuse(1, 1, 1));
+    scene.camera_above(40);
+    constexpr int kLamps = 40;
+    constexpr float kLeast = 0.02f;
+    for (int k = 0; k < kLamps; ++k)
+        scene.light(k % 2 ? TRP_LIGHT_POINT : TRP_LIGHT_AREA, {2, 1, 0.5f},
+                    look_at({20 * number(random), 20 * number(random), 2}, {0, 0, -50}),
+                    [&](TrpLightDesc& d) { d.falloff = k % 4 < 2 ? TRP_FALLOFF_PHYSICAL : TRP_FALLOFF_LINEAR; });
+    scene.commit();
+    const Settings settings = {{"samples", "4"}, {"shadows", "off"}};
+    const Image
+        whole = Render(scene, 64, 64, settings).run().read(),
+        cut = Render(scene, 64, 64, with(settings, {{"shading.least_light", std::to_string(kLeast)}})).run().read();
+    double lost = 0;
+    for (size_t i = 0; i < whole.values.size(); ++i) {
+        const float difference = whole.values[i] - cut.values[i];
+        ASSERT_GE(difference, -1e-5f);
+        ASSERT_LE(difference, kLamps * kLeast);
+        lost += difference;
+    }
+    EXPECT_GT(lost, 1) << "some are left out";
 }
 
 }  // namespace
