@@ -3,7 +3,9 @@
 
 #include <Imath/ImathVec.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace trp {
 
@@ -50,6 +52,18 @@ struct Affine {
         return a;
     }
 };
+
+// Of steps that are evenly spaced over the times 0 to 1, linear between two: at least one.
+inline Affine at_time(const std::vector<Affine>& steps, float time) {
+    const float at = time * static_cast<float>(steps.size() - 1);
+    const auto before = std::min(static_cast<size_t>(std::max(at, 0.0f)), steps.size() - 1),
+               after = std::min(before + 1, steps.size() - 1);
+    const float share = at - static_cast<float>(before);
+    Affine out = steps[before];
+    for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 4; ++c) out.rows[r][c] += share * (steps[after].rows[r][c] - steps[before].rows[r][c]);
+    return out;
+}
 
 inline float luminance(const Vec3& c) {  // Rec. 709
     return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z;

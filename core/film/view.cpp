@@ -4,9 +4,9 @@
 
 namespace trp {
 
-View make_view(const Camera& camera, const Vec3d& origin, uint32_t width, uint32_t height) {
+View make_view(const Camera& camera, const Vec3d& origin, uint32_t width, uint32_t height, size_t time_sample) {
     View view;
-    const Affine m = camera.world_from_camera[0].relative_to(origin);
+    const Affine m = camera.world_from_camera[time_sample].relative_to(origin);
     view.position = m.column(3);
     // Scale and shear are no part of a camera: the axes are made orthonormal from where it looks and what is up.
     view.z = m.column(2).normalized();

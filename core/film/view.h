@@ -17,6 +17,7 @@ struct View {
     uint32_t blade_count = 0;
 };
 
-View make_view(const Camera& camera, const Vec3d& origin, uint32_t width, uint32_t height);
+// At one of the camera's time samples.
+View make_view(const Camera& camera, const Vec3d& origin, uint32_t width, uint32_t height, size_t time_sample = 0);
 
 }  // namespace trp

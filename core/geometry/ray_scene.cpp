@@ -45,12 +45,15 @@ EmbreeScene new_scene(RTCBuildQuality quality, unsigned more_flags = 0) {
     return scene;
 }
 
-// Triangles over positions and indices that outlive the geometry.
-EmbreeGeometry new_triangles(const Surface& surface, const Vec3* positions) {
+// Triangles over indices and positions, time step after time step, that outlive the geometry.
+EmbreeGeometry new_triangles(const Surface& surface, const Vec3* positions, uint32_t steps) {
     EmbreeGeometry geometry(rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_TRIANGLE));
     rtcSetGeometryBuildQuality(geometry.get(), RTC_BUILD_QUALITY_MEDIUM);
-    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions, 0, sizeof(Vec3),
-                               surface.mesh().vertex_count);
+    const size_t vertices = surface.mesh().vertex_count;
+    rtcSetGeometryTimeStepCount(geometry.get(), steps);
+    for (uint32_t step = 0; step < steps; ++step)
+        rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, step, RTC_FORMAT_FLOAT3, positions,
+                                   step * vertices * sizeof(Vec3), sizeof(Vec3), vertices);
     rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, surface.triangle_vertices(),
                                0, 3 * sizeof(uint32_t), surface.triangle_count());
     return geometry;
@@ -62,13 +65,15 @@ bool is_instanced(const Placement& placement, uint32_t uses) {
     constexpr uint64_t kGreatestCopies = 1 << 16;  // triangles
     if (uses < 2 || uint64_t{uses} * placement.surface->triangle_count() <= kGreatestCopies) return false;
     // Rays go into an instance by the inverse of its transform, which a flattened one lacks.
-    return std::abs(placement.world_from_object.determinant()) > 1e-30;
+    return std::all_of(placement.world_from_object.begin(), placement.world_from_object.end(),
+                       [](const Affine& m) { return std::abs(m.determinant()) > 1e-30; });
 }
 
 // The tree of a surface that several instances share.
 struct SharedTree {
     explicit SharedTree(const Surface& surface) : scene(new_scene(RTC_BUILD_QUALITY_MEDIUM)) {
-        const EmbreeGeometry geometry = new_triangles(surface, surface.mesh().positions.data());
+        const EmbreeGeometry geometry =
+            new_triangles(surface, surface.mesh().positions.data(), surface.mesh().time_count);
         rtcCommitGeometry(geometry.get());
         rtcAttachGeometry(scene.get(), geometry.get());
         rtcCommitScene(scene.get());
@@ -82,23 +87,22 @@ struct SharedTree {
 class PlacedGeometry {
   public:
     PlacedGeometry(const Placement& placement, std::shared_ptr<const SharedTree> tree)
-        : placement(placement), tree(std::move(tree)) {
+        : placement(placement), tree(std::move(tree)), steps(placement.surface->mesh().time_count) {
         const Surface& surface = *placement.surface;
         if (this->tree) {
             geometry.reset(rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_INSTANCE));
             rtcSetGeometryInstancedScene(geometry.get(), this->tree->scene.get());
-            rtcSetGeometryTransform(geometry.get(), 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, placement.world_from_object.rows);
+            const std::vector<Affine>& motion = placement.world_from_object;
+            rtcSetGeometryTimeStepCount(geometry.get(), static_cast<unsigned>(motion.size()));
+            for (unsigned step = 0; step < motion.size(); ++step)
+                rtcSetGeometryTransform(geometry.get(), step, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, motion[step].rows);
         } else {
             positions = surface.mesh().positions.data();
-            if (!(placement.world_from_object == Affine{})) {
-                moved.reserve(surface.mesh().vertex_count + 1);  // Embree may read 4 bytes past the end
-                moved.resize(surface.mesh().vertex_count);
-                parallel_ranges(moved.size(), 1 << 15, [&](size_t begin, size_t end) {
-                    for (size_t v = begin; v < end; ++v) moved[v] = placement.world_from_object.point(positions[v]);
-                });
+            if (placement.world_from_object != std::vector<Affine>(1)) {
+                move_to_world();
                 positions = moved.data();
             }
-            geometry = new_triangles(surface, positions);
+            geometry = new_triangles(surface, positions, steps);
         }
         rtcSetGeometryMask(geometry.get(), placement.mask);
         rtcCommitGeometry(geometry.get());
@@ -106,9 +110,34 @@ class PlacedGeometry {
 
     const Placement placement;
     const std::shared_ptr<const SharedTree> tree;  // null: in world space
+    uint32_t steps;                                // of the positions
     std::vector<Vec3> moved;
     const Vec3* positions = nullptr;
     EmbreeGeometry geometry;
+
+  private:
+    // As many steps as the mesh or the placement has; what has fewer is linear between them.
+    void move_to_world() {
+        const Mesh& mesh = placement.surface->mesh();
+        const size_t vertices = mesh.vertex_count;
+        steps = std::max(steps, static_cast<uint32_t>(placement.world_from_object.size()));
+        moved.reserve(steps * vertices + 1);  // Embree may read 4 bytes past the end
+        moved.resize(steps * vertices);
+        for (uint32_t step = 0; step < steps; ++step) {
+            const float time = steps > 1 ? static_cast<float>(step) / static_cast<float>(steps - 1) : 0;
+            const Affine world_from_object = at_time(placement.world_from_object, time);
+            const float at = time * static_cast<float>(mesh.time_count - 1);
+            const auto before = std::min(static_cast<uint32_t>(at), mesh.time_count - 1),
+                       after = std::min(before + 1, mesh.time_count - 1);
+            const float share = at - static_cast<float>(before);
+            const Vec3 *const from = &mesh.positions[before * vertices], *const to = &mesh.positions[after * vertices];
+            Vec3* const out = &moved[step * vertices];
+            parallel_ranges(vertices, 1 << 15, [&](size_t begin, size_t end) {
+                for (size_t v = begin; v < end; ++v)
+                    out[v] = world_from_object.point(share > 0 ? from[v] + (to[v] - from[v]) * share : from[v]);
+            });
+        }
+    }
 };
 
 std::shared_ptr<RayScene> RayScene::build(const std::vector<Placement>& placements,
@@ -182,6 +211,10 @@ const Placement* RayScene::placement(uint32_t slot) const {
 
 const Vec3* RayScene::world_positions(uint32_t slot) const {
     return slots_[slot]->positions;
+}
+
+uint32_t RayScene::position_steps(uint32_t slot) const {
+    return slots_[slot]->steps;
 }
 
 uint64_t RayScene::position_bytes() const {

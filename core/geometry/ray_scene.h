@@ -19,7 +19,7 @@ namespace trp {
 struct Placement {
     uint32_t instance = 0;  // the scene's id, which tells placements of one commit and the next apart
     std::shared_ptr<const Surface> surface;
-    Affine world_from_object;  // relative to the origin
+    std::vector<Affine> world_from_object;  // relative to the origin; one to a time sample, at least one
     unsigned mask = 0;
 };
 
@@ -37,9 +37,10 @@ class RayScene {
     // Geometry ids run from 0 to slot_count() − 1; a slot may be empty (null).
     size_t slot_count() const { return slots_.size(); }
     const Placement* placement(uint32_t slot) const;
-    // Vertices in world space where the surface was moved there, else null: then they are the mesh's, to be
-    // transformed.
+    // Vertices in world space where the surface was moved there, time step after time step, else null: then they are
+    // the mesh's, to be transformed.
     const Vec3* world_positions(uint32_t slot) const;
+    uint32_t position_steps(uint32_t slot) const;  // of those, or of the mesh's
     // How occlusion packets may be traced: a coherent one can fail to return from an instance (seen in Embree 3.13.5).
     Coherence occlusion_coherence() const { return instanced_ ? Coherence::incoherent : Coherence::coherent; }
     uint64_t position_bytes() const;  // of the world-space copies

@@ -183,7 +183,7 @@ Mesh describe(const TrpMeshDesc& desc, uint32_t id) {
     Mesh mesh;
     mesh.name = text_of(desc.name);
     const std::string what = item_name("mesh", id, mesh.name);
-    check_range(what, "time_count", desc.time_count, 1, 1024);
+    check_range(what, "time_count", desc.time_count, 1, kMostTimeSamples);
     mesh.time_count = desc.time_count;
 
     const View positions(what, "positions", desc.positions, 3);

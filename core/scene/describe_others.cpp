@@ -16,7 +16,7 @@ constexpr double kGreatestWidth = 1e9, kGreatestAperture = 1e6;
 }  // namespace
 
 std::vector<Affine> describe_transforms(const float* rows, uint32_t count, const std::string& what) {
-    check_range(what, "time_count", count, 1, 1024);
+    check_range(what, "time_count", count, 1, kMostTimeSamples);
     std::vector<Affine> out(count);
     if (!rows) return out;
     for (uint32_t i = 0; i < 12 * count; ++i)

@@ -25,6 +25,8 @@ inline const Attribute* find_layer(const std::vector<Attribute>& layers, const s
     return it == layers.end() ? nullptr : &*it;
 }
 
+inline constexpr uint32_t kMostTimeSamples = 129;  // Embree's limit
+
 struct Mesh {
     std::string name;
     uint32_t time_count = 1;

@@ -17,8 +17,9 @@ uint32_t reached_lanes(const ReadyLight& light, float reach, const Points& point
     const hn::CappedTag<float, 16> d;
     const hn::RebindToUnsigned<decltype(d)> du;
     using V = hn::Vec<decltype(d)>;
-    const bool any_place = light.kind == ReadyLight::Kind::point || light.kind == ReadyLight::Kind::spot ||
-                           light.kind == ReadyLight::Kind::area;
+    const bool any_place =
+        light.motion.empty() && (light.kind == ReadyLight::Kind::point || light.kind == ReadyLight::Kind::spot ||
+                                 light.kind == ReadyLight::Kind::area);
     // A cone that is wider than a half space is not convex, and nothing is kept from it.
     const bool cone = light.kind == ReadyLight::Kind::spot && light.cos_half_angle > 0;
     const float sine = std::sqrt(std::max(1 - light.cos_half_angle * light.cos_half_angle, 0.0f));

@@ -13,7 +13,7 @@
 #define HWY_TARGET_INCLUDE "shading/light_samples.cpp"
 #include "hwy/foreach_target.h"
 
-#include "shading/equation-inl.h"
+#include "shading/surface_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace trp::HWY_NAMESPACE {
@@ -88,13 +88,17 @@ template <class D, class V = hn::Vec<D>>
 void sample_lanes(D d, const ReadyLight& light, int32_t falloff, const Points& points, int i, V u, V v,
                   LightSamples& samples) {
     const V zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-    const Vector3<V> z = broadcast(d, light.z);
+    const V time = hn::Load(d, points.time + i);
+    const auto at_that_time = [&](Vec3 LightFrame::*vector) {
+        return vector_at<D, V, LightFrame>(d, light, light.motion, vector, time);
+    };
+    const Vector3<V> z = at_that_time(&LightFrame::z);
     Vector3<V> direction;
     V distance = hn::Set(d, kFar), weight;  // I_L = emission · weight
     switch (light.kind) {
         case ReadyLight::Kind::point:
         case ReadyLight::Kind::spot: {
-            const Vector3<V> to_centre = broadcast(d, light.position) - load3(d, points.position, i);
+            const Vector3<V> to_centre = at_that_time(&LightFrame::position) - load3(d, points.position, i);
             const V centre_distance2 = dot3(to_centre, to_centre);
             const V centre_distance = hn::Sqrt(centre_distance2);
             const Vector3<V> axis = to_centre * safe_inverse(d, centre_distance);
@@ -138,7 +142,7 @@ void sample_lanes(D d, const ReadyLight& light, int32_t falloff, const Points& p
                 const V s = hn::Set(d, light.sin_half_angle);
                 x = hn::Mul(x, s), y = hn::Mul(y, s);
                 const V cosine = hn::Sqrt(hn::Max(hn::NegMulAdd(x, x, hn::NegMulAdd(y, y, one)), hn::Set(d, 1e-6f)));
-                direction = z * cosine + broadcast(d, light.x) * x + broadcast(d, light.y) * y;
+                direction = z * cosine + at_that_time(&LightFrame::x) * x + at_that_time(&LightFrame::y) * y;
                 weight = hn::Div(one, cosine);
             }
             break;
@@ -150,8 +154,8 @@ void sample_lanes(D d, const ReadyLight& light, int32_t falloff, const Points& p
             V x = hn::MulSub(hn::Set(d, 2.0f), u, one), y = hn::MulSub(hn::Set(d, 2.0f), v, one);
             if (light.ellipse) disk(d, u, v, x, y);
             x = hn::Mul(x, half_x), y = hn::Mul(y, half_y);
-            const Vector3<V> axis_x = broadcast(d, light.x), axis_y = broadcast(d, light.y);
-            const Vector3<V> to_centre = broadcast(d, light.position) - load3(d, points.position, i);
+            const Vector3<V> axis_x = at_that_time(&LightFrame::x), axis_y = at_that_time(&LightFrame::y);
+            const Vector3<V> to_centre = at_that_time(&LightFrame::position) - load3(d, points.position, i);
             auto wide = hn::Lt(one, zero);
             V solid_angle = zero;
             if (!light.ellipse) {
@@ -247,8 +251,9 @@ void sample_surface(const Snapshot& snapshot, const ReadyLight& light, const Poi
         emitters.time[i] = points.time[i];
         const PlacedSurface& surface = snapshot.surfaces[light.slot];
         const uint32_t* t = surface.vertices + 3 * static_cast<size_t>(emitters.triangle[i]);
-        const Vec3 at = surface.world_position(t[0]) * (1 - root) + surface.world_position(t[1]) * emitters.b1[i] +
-                        surface.world_position(t[2]) * emitters.b2[i];
+        const Vec3 at = surface.world_position(t[0], points.time[i]) * (1 - root) +
+                        surface.world_position(t[1], points.time[i]) * emitters.b1[i] +
+                        surface.world_position(t[2], points.time[i]) * emitters.b2[i];
         const Vec3 to_light = at - points.position.get(i);
         const float distance = to_light.length();
         if (!(distance > 0)) {

@@ -17,13 +17,18 @@ Vec3 unit_or(const Vec3& v, const Vec3& otherwise) {
     return length > 0 ? v / length : otherwise;
 }
 
+LightFrame frame_of(const Affine& m) {
+    return {m.column(3), unit_or(m.column(0), {1, 0, 0}), unit_or(m.column(1), {0, 1, 0}),
+            unit_or(m.column(2), {0, 0, 1})};
+}
+
 ReadyLight make_lamp(const Light& lamp) {
     ReadyLight light;
     const Affine& m = lamp.world_from_light[0];
-    light.position = m.column(3);
-    light.z = unit_or(m.column(2), {0, 0, 1});
-    light.x = unit_or(m.column(0), {1, 0, 0});
-    light.y = unit_or(m.column(1), {0, 1, 0});
+    static_cast<LightFrame&>(light) = frame_of(m);
+    if (lamp.world_from_light.size() > 1)
+        std::transform(lamp.world_from_light.begin(), lamp.world_from_light.end(), std::back_inserter(light.motion),
+                       frame_of);
     light.emission = lamp.emission;
     light.cast_shadow = lamp.cast_shadow;
     light.visible_camera = lamp.visible_camera && lamp.type == TRP_LIGHT_AREA;

@@ -39,11 +39,15 @@ struct WorldMap {
     std::vector<Distribution> columns;
 };
 
-struct ReadyLight {
-    enum class Kind { point, spot, sun, area, surface, world, world_map } kind = Kind::point;
+struct LightFrame {
     Vec3 position{0, 0, 0};                   // relative to the origin
     Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};  // unit axes of the light; it looks along −z
-    Vec3 emission{0, 0, 0};                   // as TrpLightDesc; world: radiance
+};
+
+struct ReadyLight : LightFrame {
+    enum class Kind { point, spot, sun, area, surface, world, world_map } kind = Kind::point;
+    std::vector<LightFrame> motion;  // at each time sample; empty: it stands still
+    Vec3 emission{0, 0, 0};          // as TrpLightDesc; world: radiance
     float radius = 0, sin_half_angle = 0, cos_half_angle = 0, blend_range = 0;
     float half_size[2] = {0, 0}, area = 0;
     float spread_tangent = 0, spread_scale = 0;  // area: 0 is none

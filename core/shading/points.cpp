@@ -24,9 +24,32 @@ struct Corners {
     V greatest;  // a bound of all numbers that were added up for a coordinate
 };
 
+// An affine transform of each lane.
+template <class V>
+struct AffineLanes {
+    V rows[3][4];
+};
+
+// world_from_object at the lanes' times.
+template <class D, class V>
+AffineLanes<V> transform_at(D d, const PlacedSurface& surface, V time) {
+    AffineLanes<V> out;
+    for (int r = 0; r < 3; ++r)
+        for (int k = 0; k < 4; ++k) {
+            V& entry = out.rows[r][k];
+            entry = hn::Set(d, surface.motion.empty() ? surface.world_from_object.rows[r][k] : 0.0f);
+            for (size_t step = 0; step < surface.motion.size(); ++step)
+                entry = hn::MulAdd(step_weight(d, time, step, surface.motion.size()),
+                                   hn::Set(d, surface.motion[step].rows[r][k]), entry);
+        }
+    return out;
+}
+
 // To world space.
 template <class D, class V>
-void place_corners(D d, const PlacedSurface& surface, Corners<V>& c) {
+void place_corners(D d, const PlacedSurface& surface, V time, Corners<V>& c) {
+    AffineLanes<V> m;
+    if (!surface.baked) m = transform_at(d, surface, time);
     Vector3<V>* const points[3] = {&c.p0, &c.p1, &c.p2};
     for (Vector3<V>* p : points) {
         if (surface.baked) {
@@ -35,9 +58,8 @@ void place_corners(D d, const PlacedSurface& surface, Corners<V>& c) {
         }
         V out[3];
         for (int r = 0; r < 3; ++r) {
-            const float* row = surface.world_from_object.rows[r];
-            const V x = hn::Mul(hn::Set(d, row[0]), p->x), y = hn::Mul(hn::Set(d, row[1]), p->y),
-                    z = hn::Mul(hn::Set(d, row[2]), p->z), w = hn::Set(d, row[3]);
+            const V x = hn::Mul(m.rows[r][0], p->x), y = hn::Mul(m.rows[r][1], p->y), z = hn::Mul(m.rows[r][2], p->z),
+                    w = m.rows[r][3];
             out[r] = hn::Add(hn::Add(x, y), hn::Add(z, w));
             const V terms = hn::Add(hn::Add(hn::Abs(x), hn::Abs(y)), hn::Add(hn::Abs(z), hn::Abs(w)));
             c.greatest = hn::Max(c.greatest, terms);
@@ -54,6 +76,25 @@ Vector3<V> turn_normal(D d, const PlacedSurface& surface, const Vector3<V>& n) {
     const float sign = surface.normal_sign;
     return broadcast(d, y.cross(z) * sign) * n.x + broadcast(d, z.cross(x) * sign) * n.y +
            broadcast(d, x.cross(y) * sign) * n.z;
+}
+
+// As turn_normal(), where the surface moves.
+template <class D, class V>
+Vector3<V> turn_normal_at(D d, const PlacedSurface& surface, V time, const Vector3<V>& n) {
+    const AffineLanes<V> m = transform_at(d, surface, time);
+    const auto column = [&](int k) { return Vector3<V>{m.rows[0][k], m.rows[1][k], m.rows[2][k]}; };
+    const Vector3<V> x = column(0), y = column(1), z = column(2);
+    return (cross3(y, z) * n.x + cross3(z, x) * n.y + cross3(x, y) * n.z) * hn::Set(d, surface.normal_sign);
+}
+
+// A vertex at the lanes' times, as positions have it.
+template <class D, class V>
+Vector3<V> vertex_at(D d, const PlacedSurface& surface, uint32_t vertex, V time) {
+    Vector3<V> out = broadcast(d, surface.positions[vertex]) * step_weight(d, time, 0, surface.position_steps);
+    for (size_t step = 1; step < surface.position_steps; ++step)
+        out = add_scaled(out, broadcast(d, surface.positions[step * surface.mesh->vertex_count + vertex]),
+                         step_weight(d, time, step, surface.position_steps));
+    return out;
 }
 
 // Unit length, times `side`; vectors are scaled before they are squared, so that the smallest keep a length.
@@ -98,6 +139,7 @@ void locate_lanes(const Snapshot& snapshot, NormalChoice choice, Side seen_side,
         const VI slots = load(points.slot + i), triangles = load(points.triangle + i);
         const auto hit = hn::Ne(slots, hn::Set(di, static_cast<int32_t>(kNoSlot)));
         V b1 = zero, b2 = zero, depth = zero;
+        const V time = from ? zero : hn::Load(d, points.time + i);
         Vector3<V> origin{zero, zero, zero}, direction = origin;
         if (from) {
             origin = from->origins ? load3(d, *from->origins, i) : broadcast(d, from->eye);
@@ -115,15 +157,22 @@ void locate_lanes(const Snapshot& snapshot, NormalChoice choice, Side seen_side,
         for_each_surface(di, snapshot, slots, hit, [&](const PlacedSurface& surface, auto here) {
             const auto mask = hn::RebindMask(d, here);
             const NormalLayer& layer = surface.surface->normals(choice);
-            Corners<V> c{none, none, none, zero};
+            Corners<V> c{none, none, none, zero}, rest = c;
+            const bool bends = surface.mesh->time_count > 1;
             Vector3<V> n0 = none, n1 = none, n2 = none;
             auto smooth = hn::MaskFromVec(zero);
             for_each_triangle(di, triangles, here, [&](uint32_t triangle, auto these) {
                 const auto lanes_of = hn::RebindMask(d, these);
                 const uint32_t* const v = surface.vertices + 3 * size_t{triangle};
-                c.p0 = select3(lanes_of, broadcast(d, surface.positions[v[0]]), c.p0);
-                c.p1 = select3(lanes_of, broadcast(d, surface.positions[v[1]]), c.p1);
-                c.p2 = select3(lanes_of, broadcast(d, surface.positions[v[2]]), c.p2);
+                Vector3<V>* const corners[3] = {&c.p0, &c.p1, &c.p2};
+                for (int k = 0; k < 3; ++k)
+                    *corners[k] = select3(lanes_of,
+                                          surface.position_steps == 1 ? broadcast(d, surface.positions[v[k]])
+                                                                      : vertex_at(d, surface, v[k], time),
+                                          *corners[k]);
+                Vector3<V>* const rest_corners[3] = {&rest.p0, &rest.p1, &rest.p2};
+                for (int k = 0; k < 3 && bends; ++k)
+                    *rest_corners[k] = select3(lanes_of, broadcast(d, surface.positions[v[k]]), *rest_corners[k]);
                 const uint32_t material = surface.material(triangle);
                 hn::BlendedStore(hn::Set(di, static_cast<int32_t>(material)), these, di,
                                  reinterpret_cast<int32_t*>(points.material) + i);
@@ -140,7 +189,12 @@ void locate_lanes(const Snapshot& snapshot, NormalChoice choice, Side seen_side,
                 n1 = select3(lanes_of, normal_of(1), n1);
                 n2 = select3(lanes_of, normal_of(2), n2);
             });
-            place_corners(d, surface, c);
+            // Where a mesh bends, its normals, which are of the first time sample, follow the faces.
+            Vector3<V> bend = none;
+            if (bends)
+                bend = unit(d, cross3(c.p1 - c.p0, c.p2 - c.p0), one) -
+                       unit(d, cross3(rest.p1 - rest.p0, rest.p2 - rest.p0), one);
+            place_corners(d, surface, time, c);
             const Vector3<V> e1 = c.p1 - c.p0, e2 = c.p2 - c.p0;
             if (from) {
                 const Meeting<V> at = meet(d, origin, direction, c.p0, e1, e2);
@@ -158,7 +212,11 @@ void locate_lanes(const Snapshot& snapshot, NormalChoice choice, Side seen_side,
             Vector3<V> shading = plane;
             if (!hn::AllFalse(d, smooth)) {
                 Vector3<V> n = add_scaled(add_scaled(n0, n1 - n0, b1), n2 - n0, b2);
-                if (!surface.identity) n = turn_normal(d, surface, n);
+                if (bends && !surface.baked) n = unit(d, n, one) + bend;
+                if (!surface.identity)
+                    n = surface.motion.empty() || (bends && surface.baked) ? turn_normal(d, surface, n)
+                                                                           : turn_normal_at(d, surface, time, n);
+                if (bends && surface.baked) n = unit(d, n, one) + bend * hn::Set(d, surface.normal_sign);
                 shading = select3(smooth, n, plane);
             }
             normal = select3(mask, shading, normal);

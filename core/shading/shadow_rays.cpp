@@ -40,7 +40,7 @@ bool make_shadow_packet(const Points& points, const LightSamples& samples, unsig
         hn::Store(l.z, d, ray.dir_z + k);
         hn::Store(zero, d, ray.tnear + k);
         hn::Store(hn::Mul(hn::Load(d, samples.distance + i), hn::Set(d, kShortOfLight)), d, ray.tfar + k);
-        hn::Store(zero, d, ray.time + k);
+        hn::Store(hn::Load(d, points.time + i), d, ray.time + k);
         hn::Store(hn::Set(du, mask), du, ray.mask + k);
         hn::Store(hn::Zero(du), du, ray.flags + k);
         hn::Store(hn::Zero(du), du, ray.id + k);
@@ -112,6 +112,7 @@ uint64_t filter_shadows(const Snapshot& snapshot, const Points& points, const Li
                 packet.ray.dir_x[k] = direction.x, packet.ray.dir_y[k] = direction.y, packet.ray.dir_z[k] = direction.z;
                 packet.ray.tnear[k] = reached[i];
                 packet.ray.tfar[k] = samples.distance[i] * kShortOfLight;
+                packet.ray.time[k] = points.time[i];
                 packet.ray.mask[k] = mask;
                 packet.hit.geomID[k] = packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
             }

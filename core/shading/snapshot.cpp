@@ -155,26 +155,19 @@ bool has_extent(const Bounds& bounds) {
     return extent > 0;
 }
 
-// Says what has several time samples, of which the first is shown.
-void warn_of_motion(const Scene& scene, Snapshot& snapshot) {
-    auto check = [&](int32_t code, const char* kind, uint32_t id, const std::string& name, size_t samples) {
-        if (samples > 1)
-            warn(snapshot, code, id,
-                 fmt::format("{} has {} time samples; the first is shown", item_name(kind, id, name), samples));
-    };
-    for (const auto& [id, mesh] : scene.meshes) check(TRP_WARNING_MESH, "mesh", id, mesh->name, mesh->time_count);
-    for (const auto& [id, instance] : scene.instances)
-        check(TRP_WARNING_MESH, "instance", id, instance->name, instance->world_from_object.size());
-    for (const auto& [id, light] : scene.lights)
-        check(TRP_WARNING_LIGHT, "light", id, light->name, light->world_from_light.size());
-    if (snapshot.camera)
-        check(TRP_WARNING_CAMERA, "camera", scene.camera, snapshot.camera->name,
-              snapshot.camera->world_from_camera.size());
+bool moves(const Scene& scene, const Snapshot& snapshot) {
+    const auto lamp_moves = [](const Light& lamp) { return lamp.world_from_light.size() > 1; };
+    if (snapshot.camera && snapshot.camera->world_from_camera.size() > 1) return true;
+    return std::any_of(snapshot.lamps.begin(), snapshot.lamps.end(), lamp_moves) ||
+           std::any_of(scene.instances.begin(), scene.instances.end(), [&](const auto& entry) {
+               return entry.second->world_from_object.size() > 1 ||
+                      scene.meshes.find(entry.second->mesh)->time_count > 1;
+           });
 }
 
-// `world_positions`: the vertices where they were moved to world space, else null.
-PlacedSurface place(const Placement& placement, const Vec3* world_positions, const Instance& instance,
-                    std::vector<uint32_t> slot_materials) {
+// `world_positions`: the vertices where they were moved to world space, else null; of so many time steps.
+PlacedSurface place(const Placement& placement, const Vec3* world_positions, uint32_t position_steps,
+                    const Instance& instance, std::vector<uint32_t> slot_materials) {
     PlacedSurface out;
     const Surface& surface = *placement.surface;
     out.surface = placement.surface;
@@ -185,11 +178,14 @@ PlacedSurface place(const Placement& placement, const Vec3* world_positions, con
     out.corners = surface.triangle_corners();
     out.faces = surface.triangle_faces();
     out.face_smooth = surface.mixed_smooth() ? out.mesh->face_smooth.data() : nullptr;
-    out.world_from_object = placement.world_from_object;
-    Affine unmoved = placement.world_from_object;
-    for (auto& row : unmoved.rows) row[3] = 0;
-    out.identity = unmoved == Affine{};
-    out.normal_sign = placement.world_from_object.determinant() < 0 ? -1.0f : 1.0f;
+    out.position_steps = position_steps;
+    out.world_from_object = placement.world_from_object[0];
+    if (placement.world_from_object.size() > 1) out.motion = placement.world_from_object;
+    out.identity = std::all_of(placement.world_from_object.begin(), placement.world_from_object.end(), [](Affine m) {
+        for (auto& row : m.rows) row[3] = 0;
+        return m == Affine{};
+    });
+    out.normal_sign = out.world_from_object.determinant() < 0 ? -1.0f : 1.0f;
     out.instance = placement.instance;
     out.slot_materials = std::move(slot_materials);
     if (out.slot_materials.size() > 1 && !out.mesh->face_materials.empty())
@@ -232,6 +228,18 @@ void fill_info(const Scene& scene, Snapshot& snapshot) {
 
 }  // namespace
 
+Vec3 PlacedSurface::world_position(uint32_t vertex, float time) const {
+    const float at = time * static_cast<float>(position_steps - 1);
+    const auto before = std::min(static_cast<uint32_t>(at), position_steps - 1),
+               after = std::min(before + 1, position_steps - 1);
+    const size_t vertices = mesh->vertex_count;
+    const Vec3 from = positions[before * vertices + vertex], to = positions[after * vertices + vertex];
+    const Vec3 position = from + (to - from) * (at - static_cast<float>(before));
+    return baked            ? position
+           : motion.empty() ? world_from_object.point(position)
+                            : at_time(motion, time).point(position);
+}
+
 std::shared_ptr<const Snapshot> make_snapshot(const Scene& scene, std::shared_ptr<const Snapshot>& previous) {
     const auto start = Clock::now();
     check_references(scene);
@@ -239,7 +247,6 @@ std::shared_ptr<const Snapshot> make_snapshot(const Scene& scene, std::shared_pt
     snapshot->camera = scene.cameras.find(scene.camera);
     snapshot->origin = origin_near(snapshot->camera.get());
     snapshot->world = scene.world;
-    warn_of_motion(scene, *snapshot);
     std::map<uint32_t, uint32_t> index_of;
     make_materials(scene, *snapshot, previous.get(), index_of);
     make_surfaces(scene, *snapshot, previous.get());
@@ -248,6 +255,8 @@ std::shared_ptr<const Snapshot> make_snapshot(const Scene& scene, std::shared_pt
         for (Affine& m : lamp.world_from_light) m = m.relative_to(snapshot->origin);
         snapshot->lamps.push_back(std::move(lamp));
     }
+
+    snapshot->moves = moves(scene, *snapshot);
 
     std::vector<Placement> placements;
     std::map<uint32_t, std::vector<uint32_t>> slots_of;
@@ -265,19 +274,21 @@ std::shared_ptr<const Snapshot> make_snapshot(const Scene& scene, std::shared_pt
         Placement p;
         p.instance = id;
         p.surface = surface;
-        p.world_from_object = instance->world_from_object[0].relative_to(snapshot->origin);
+        for (const Affine& m : instance->world_from_object)
+            p.world_from_object.push_back(m.relative_to(snapshot->origin));
         p.mask = (instance->visible_camera ? kSeenByCamera : 0u) | (!instance->visible_shadow ? 0u
                                                                     : holes                   ? kFiltersShadow
                                                                     : transmits               ? kTransmitsShadow
                                                                                               : kCastsShadow);
-        if (!has_extent(world_bounds(*surface, p.world_from_object))) {
+        if (std::any_of(p.world_from_object.begin(), p.world_from_object.end(),
+                        [&](const Affine& m) { return !has_extent(world_bounds(*surface, m)); })) {
             warn(*snapshot, TRP_WARNING_MESH, id,
                  fmt::format("{} has no extent where it stands and was left out",
                              item_name("instance", id, instance->name)));
             continue;
         }
         if (is_wire)
-            snapshot->wires.push_back(place(p, nullptr, *instance, slots));
+            snapshot->wires.push_back(place(p, nullptr, surface->mesh().time_count, *instance, slots));
         else
             placements.push_back(std::move(p));
     }
@@ -295,8 +306,9 @@ std::shared_ptr<const Snapshot> make_snapshot(const Scene& scene, std::shared_pt
     for (uint32_t slot = 0; slot < snapshot->surfaces.size(); ++slot) {
         if (!snapshot->rays->placement(slot)) continue;
         const uint32_t id = snapshot->rays->placement(slot)->instance;
-        snapshot->surfaces[slot] = place(*snapshot->rays->placement(slot), snapshot->rays->world_positions(slot),
-                                         *scene.instances.find(id), std::move(slots_of[id]));
+        snapshot->surfaces[slot] =
+            place(*snapshot->rays->placement(slot), snapshot->rays->world_positions(slot),
+                  snapshot->rays->position_steps(slot), *scene.instances.find(id), std::move(slots_of[id]));
     }
     snapshot->lights = make_lights(*snapshot);
     fill_info(scene, *snapshot);

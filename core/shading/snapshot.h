@@ -16,14 +16,16 @@ namespace trp {
 // What shading reads of a placed surface, by geometry id.
 struct PlacedSurface {
     const Mesh* mesh = nullptr;
-    const Vec3* positions = nullptr;           // world space where `baked`, else object space
+    const Vec3* positions = nullptr;           // world space where `baked`, else object space; step after step
+    uint32_t position_steps = 1;               // evenly spaced over the time samples
     const uint32_t* vertices = nullptr;        // three to a triangle
     const uint32_t* corners = nullptr;         // null: 3t … 3t + 2
     const uint32_t* faces = nullptr;           // null: t
     const uint8_t* face_smooth = nullptr;      // null: all faces have the normals chosen
     const uint16_t* face_materials = nullptr;  // null: all faces are of slot 0
     std::vector<uint32_t> slot_materials;      // indices into Snapshot::materials, at least one
-    Affine world_from_object;
+    Affine world_from_object;                  // at the first time sample
+    std::vector<Affine> motion;                // of world_from_object over the time samples; empty: it stands still
     bool baked = true, identity = true;
     float normal_sign = 1;  // −1 where the transform mirrors
     Vec3 color{1, 1, 1};
@@ -43,6 +45,7 @@ struct PlacedSurface {
     Vec3 world_position(uint32_t vertex) const {
         return baked ? positions[vertex] : world_from_object.point(positions[vertex]);
     }
+    Vec3 world_position(uint32_t vertex, float time) const;
 };
 
 enum MaterialFlag : uint8_t {
@@ -66,6 +69,7 @@ struct Snapshot {
     World world;
     std::shared_ptr<const Camera> camera;  // null: none; in world space, not relative
     bool needs_footprint = false;
+    bool moves = false;             // something that is shown, a light or the camera, between the time samples
     bool any_holes = false;         // a shown material's alpha may be below 1
     bool any_transmission = false;  // a shown material transmits, and may be lighter in shadows
     bool seen_through = false;      // or one transmits, or has one side: the eye may see what lies behind a surface

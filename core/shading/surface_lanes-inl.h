@@ -42,6 +42,25 @@ void for_each_triangle(DI di, VI triangles, M left, Visit&& visit) {
     }
 }
 
+// What each of `steps`, evenly spaced over the times 0 to 1, counts for at the lanes' times: linear between two.
+template <class D, class V>
+V step_weight(D d, V time, size_t step, size_t steps) {
+    const V at = hn::Mul(time, hn::Set(d, static_cast<float>(steps - 1)));
+    const V away = hn::Abs(hn::Sub(at, hn::Set(d, static_cast<float>(step))));
+    return hn::Max(hn::Sub(hn::Set(d, 1.0f), away), hn::Zero(d));
+}
+
+// A vector of a frame that moves, at the lanes' times; `motion`: the frame at each time sample, or empty where it
+// stands still as `first` has it.
+template <class D, class V, class Frame>
+Vector3<V> vector_at(D d, const Frame& first, const std::vector<Frame>& motion, Vec3 Frame::*vector, V time) {
+    if (motion.empty()) return broadcast(d, first.*vector);
+    Vector3<V> out = broadcast(d, Vec3(0, 0, 0));
+    for (size_t step = 0; step < motion.size(); ++step)
+        out = add_scaled(out, broadcast(d, motion[step].*vector), step_weight(d, time, step, motion.size()));
+    return out;
+}
+
 }  // namespace trp::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif

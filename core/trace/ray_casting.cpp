@@ -150,12 +150,10 @@ void Caster::tile(const TileWork& work) const {
 bool ray_casting(RenderJob& job, const RenderEvents& events) {
     const Window& window = job.film->window();
     const Settings& settings = job.settings;
-    if (!job.snapshot->camera) fail(TRP_ERROR_STATE, "the scene has no camera to render from");
     const Caster caster{job,
                         *job.snapshot,
-                        RayMaker{make_view(*job.snapshot->camera, job.snapshot->origin, window.width, window.height),
-                                 PixelFilter(settings.filter, settings.filter_width), settings.seed,
-                                 std::max(0.125f, 1 / std::sqrt(static_cast<float>(settings.samples)))},
+                        make_ray_maker(*job.snapshot, settings, PixelFilter(settings.filter, settings.filter_width),
+                                       window.width, window.height),
                         job.film->passes().has(kShadow),
                         wants_light_parts(job.film->passes()),
                         std::any_of(job.snapshot->lights.begin(), job.snapshot->lights.end(),

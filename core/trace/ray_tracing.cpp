@@ -52,23 +52,20 @@ void find_solids_around_eye(Tracer& tracer) {
 Tracer make_tracer(const RenderJob& job, const PixelFilter& filter, bool one_way) {
     const Window& window = job.film->window();
     const Snapshot& snapshot = *job.snapshot;
-    if (!snapshot.camera) fail(TRP_ERROR_STATE, "the scene has no camera to render from");
     const auto any_light = [&](auto&& wanted) {
         return std::any_of(snapshot.lights.begin(), snapshot.lights.end(), wanted);
     };
-    Tracer tracer{
-        job,
-        snapshot,
-        RayMaker{make_view(*snapshot.camera, snapshot.origin, window.width, window.height), filter, job.settings.seed,
-                 std::max(0.125f, 1 / std::sqrt(static_cast<float>(job.settings.samples)))},
-        job.settings.illumination,
-        one_way,
-        job.film->passes().has(kShadow),
-        wants_light_parts(job.film->passes()),
-        any_light([](const ReadyLight& l) { return l.visible_camera; }),
-        any_light([](const ReadyLight& l) { return l.kind == ReadyLight::Kind::area; }),
-        0,
-        {}};
+    Tracer tracer{job,
+                  snapshot,
+                  make_ray_maker(snapshot, job.settings, filter, window.width, window.height),
+                  job.settings.illumination,
+                  one_way,
+                  job.film->passes().has(kShadow),
+                  wants_light_parts(job.film->passes()),
+                  any_light([](const ReadyLight& l) { return l.visible_camera; }),
+                  any_light([](const ReadyLight& l) { return l.kind == ReadyLight::Kind::area; }),
+                  0,
+                  {}};
     tracer.illumination.mirrors = true;
     // What a transparent body casts on a path's surfaces is found by the paths that go through it.
     if (one_way) tracer.illumination.transparent_shadows = TransparentShadows::opaque;

@@ -1,6 +1,7 @@
 #include "trace/rays.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "film/film.h"
@@ -10,7 +11,7 @@
 #include "hwy/foreach_target.h"
 
 #include "film/pixel_random-inl.h"
-#include "shading/equation-inl.h"
+#include "shading/surface_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace trp::HWY_NAMESPACE {
@@ -56,6 +57,7 @@ void make_keys(const RayMaker& maker, uint32_t block_x, uint32_t block_y, BlockR
     }
 }
 
+// Of the pairs of random numbers the first is for the film, the next for the lens, and the third for time.
 void make_rays(const RayMaker& maker, uint32_t block_x, uint32_t block_y, uint32_t sample, BlockRays& rays) {
     const hn::CappedTag<float, 16> d;
     const hn::RebindToUnsigned<decltype(d)> du;
@@ -94,11 +96,22 @@ void make_rays(const RayMaker& maker, uint32_t block_x, uint32_t block_y, uint32
         }
         RTCRayHit16& packet = rays.packets[i >> 4];
         const int lane = i & 15;
+        V time = hn::Zero(d);
+        if (maker.moves) {
+            sobol_pair(d, key, sample, 2, u, v);
+            time = hn::MulAdd(u, set(maker.shutter[1] - maker.shutter[0]), set(maker.shutter[0]));
+        }
+        hn::Store(time, d, packet.ray.time + lane);
+        const Vector3<V> x = vector_at(d, view, maker.motion, &View::x, time),
+                         y = vector_at(d, view, maker.motion, &View::y, time),
+                         z = vector_at(d, view, maker.motion, &View::z, time),
+                         position = vector_at(d, view, maker.motion, &View::position, time);
+        const Vector3<V> origins3 = add_scaled(add_scaled(position, y, origin_y), x, origin_x),
+                         directions3 = add_scaled(y * direction_y - z, x, direction_x);
+        const V* const of_origin[3] = {&origins3.x, &origins3.y, &origins3.z};
+        const V* const of_direction[3] = {&directions3.x, &directions3.y, &directions3.z};
         for (int k = 0; k < 3; ++k) {
-            const V origin =
-                hn::MulAdd(set(view.x[k]), origin_x, hn::MulAdd(set(view.y[k]), origin_y, set(view.position[k])));
-            const V direction =
-                hn::MulAdd(set(view.x[k]), direction_x, hn::MulAdd(set(view.y[k]), direction_y, set(-view.z[k])));
+            const V origin = *of_origin[k], direction = *of_direction[k];
             hn::Store(origin, d, rays.origin[k] + i);
             hn::Store(direction, d, rays.direction[k] + i);
             float* const origins[3] = {packet.ray.org_x, packet.ray.org_y, packet.ray.org_z};
@@ -118,7 +131,6 @@ void read_hit_lanes(const BlockRays& rays, const uint8_t* active, Points& points
                no_slot = hn::Set(di, static_cast<int32_t>(kNoSlot));
     auto load = [&](const unsigned* ids) { return hn::Load(di, reinterpret_cast<const int32_t*>(ids)); };
     auto store = [&](auto ids, uint32_t* out) { hn::Store(ids, di, reinterpret_cast<int32_t*>(out)); };
-    const auto zero = hn::Zero(d);
     for (int i = 0; i < kBatch; i += static_cast<int>(hn::Lanes(d))) {
         const RTCHit16& hit = rays.packets[i >> 4].hit;
         const int k = i & 15;
@@ -131,7 +143,7 @@ void read_hit_lanes(const BlockRays& rays, const uint8_t* active, Points& points
         store(load(hit.primID + k), points.triangle + i);
         hn::Store(hn::Load(d, hit.u + k), d, points.b1 + i);
         hn::Store(hn::Load(d, hit.v + k), d, points.b2 + i);
-        hn::Store(zero, d, points.time + i);
+        hn::Store(hn::Load(d, rays.packets[i >> 4].ray.time + k), d, points.time + i);
         hn::Store(hn::Load(d, rays.packets[i >> 4].ray.tfar + k), d, points.depth + i);
         const auto direction = load3(d, rays.direction, i);
         const auto scale = hn::Div(hn::Set(d, -1.0f), hn::Sqrt(dot3(direction, direction)));
@@ -147,6 +159,23 @@ namespace trp {
 HWY_EXPORT(make_keys);
 HWY_EXPORT(make_rays);
 HWY_EXPORT(read_hit_lanes);
+
+RayMaker make_ray_maker(const Snapshot& snapshot, const Settings& settings, const PixelFilter& filter, uint32_t width,
+                        uint32_t height) {
+    if (!snapshot.camera) fail(TRP_ERROR_STATE, "the scene has no camera to render from");
+    const Camera& camera = *snapshot.camera;
+    RayMaker maker{make_view(camera, snapshot.origin, width, height),
+                   filter,
+                   settings.seed,
+                   std::max(0.125f, 1 / std::sqrt(static_cast<float>(settings.samples))),
+                   snapshot.moves,
+                   {camera.shutter[0], camera.shutter[1]},
+                   {}};
+    const size_t steps = camera.world_from_camera.size();
+    for (size_t step = 0; step < steps && steps > 1; ++step)
+        maker.motion.push_back(make_view(camera, snapshot.origin, width, height, step));
+    return maker;
+}
 
 void prepare_block(const RayMaker& maker, uint32_t block_x, uint32_t block_y, BlockRays& rays) {
     HWY_DYNAMIC_DISPATCH(make_keys)(maker, block_x, block_y, rays);

@@ -4,7 +4,7 @@
 #include "film/settings.h"
 #include "film/view.h"
 #include "geometry/embree.h"
-#include "shading/batch.h"
+#include "shading/snapshot.h"
 
 namespace trp {
 
@@ -20,11 +20,18 @@ struct BlockRays {
 
 // What primary rays are made of, once for a render.
 struct RayMaker {
-    View view;
+    View view;  // at the first time sample
     PixelFilter filter;
     uint32_t seed = 0;
-    float footprint = 1;  // of a pixel: what one of many samples stands for
+    float footprint = 1;        // of a pixel: what one of many samples stands for
+    bool moves = false;         // each ray has a time of its own
+    float shutter[2] = {0, 0};  // when it opens and closes, within the time samples
+    std::vector<View> motion;   // at each time sample; empty: the camera stands still
 };
+
+// Throws Error where there is no camera.
+RayMaker make_ray_maker(const Snapshot& snapshot, const Settings& settings, const PixelFilter& filter, uint32_t width,
+                        uint32_t height);
 
 // What all rays of a block have in common, once: they meet what `mask` names.
 void prepare(BlockRays& rays, unsigned mask);

@@ -6,7 +6,7 @@
 #define HWY_TARGET_INCLUDE "trace/seen_lights.cpp"
 #include "hwy/foreach_target.h"
 
-#include "shading/equation-inl.h"
+#include "shading/surface_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace trp::HWY_NAMESPACE {
@@ -15,13 +15,18 @@ void see_light_lanes(const ReadyLight& light, const BlockRays& rays, SeenLights&
     const hn::CappedTag<float, 16> d;
     using V = hn::Vec<decltype(d)>;
     const V zero = hn::Zero(d), one = hn::Set(d, 1.0f), tiny = hn::Set(d, 1e-37f);
-    const Vector3<V> axis_x = broadcast(d, light.x), axis_y = broadcast(d, light.y), axis_z = broadcast(d, light.z);
     for (int i = 0; i < kBatch; i += static_cast<int>(hn::Lanes(d))) {
         const RTCRay16& ray = rays.packets[i >> 4].ray;
         const int k = i & 15;
+        const V time = hn::Load(d, ray.time + k);
+        const auto at_that_time = [&](Vec3 LightFrame::*vector) {
+            return vector_at<decltype(d), V, LightFrame>(d, light, light.motion, vector, time);
+        };
+        const Vector3<V> axis_x = at_that_time(&LightFrame::x), axis_y = at_that_time(&LightFrame::y),
+                         axis_z = at_that_time(&LightFrame::z);
         const Vector3<V> direction = load3(d, rays.direction, i);
         const V slope = dot3(direction, axis_z);  // it shines to −z
-        const Vector3<V> to_centre = broadcast(d, light.position) - load3(d, rays.origin, i);
+        const Vector3<V> to_centre = at_that_time(&LightFrame::position) - load3(d, rays.origin, i);
         const V t = hn::Div(dot3(to_centre, axis_z), hn::Max(slope, tiny));
         const V nearest = hn::Load(d, seen.t + i);
         const V end = hn::IfThenElse(hn::Gt(nearest, zero), nearest, hn::Load(d, ray.tfar + k));

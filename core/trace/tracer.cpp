@@ -126,6 +126,7 @@ void Tracer::primary(uint32_t block_x, uint32_t block_y, uint32_t sample, TreeWo
             ray.key = w.primary.keys[i];
             ray.sample = sample;
             ray.medium = w.media_of[i];
+            ray.time = w.points.time[i];
             ray.lane = static_cast<uint16_t>(i);
             (maker.view.perspective ? ray.spread : ray.width) = pixel_step / (maker.view.perspective ? length : 1);
             if (w.tree) {
@@ -177,6 +178,7 @@ int Tracer::take_rays(TreeWorkspace& w) const {
         const int k = i & 15;
         out.org_x[k] = ray.origin.x, out.org_y[k] = ray.origin.y, out.org_z[k] = ray.origin.z;
         out.dir_x[k] = ray.direction.x, out.dir_y[k] = ray.direction.y, out.dir_z[k] = ray.direction.z;
+        out.time[k] = ray.time;
         out.tnear[k] = 0;
         out.tfar[k] = std::numeric_limits<float>::infinity();
     }

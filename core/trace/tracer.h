@@ -33,7 +33,8 @@ struct PathRay {
     // Where it starts, these lights have been counted already.
     bool lamps_sampled = false, world_sampled = false;
     float width = 0, spread = 0;  // of its footprint where it starts; its growth with distance
-    float skipped = 0;            // of its way: its start is off the surface
+    float time = 0;
+    float skipped = 0;  // of its way: its start is off the surface
 
     uint32_t depth() const { return uint32_t{ways[0]} + ways[1] + ways[2]; }
 };

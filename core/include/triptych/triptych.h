@@ -167,8 +167,9 @@ enum {                     /* bits of edge_flags */
  * Faces that have fewer than three different vertices, or no area, are left out with a warning. */
 typedef struct TrpMeshDesc {
     uint32_t struct_size;
-    uint32_t time_count;      /* time samples of the positions, evenly spaced over the shutter; default 1. Methods
-                                 without motion blur (ray_casting) show the first */
+    uint32_t time_count;      /* time samples of the positions, evenly spaced over the shutter, 1 to 129; default 1.
+                                 Methods that trace rays blur motion between them, the rasterizer shows the first.
+                                 Normals are of the first, and follow the faces */
     const char* name;         /* UTF-8, for messages; may be null */
     TrpArray positions;       /* FLOAT32 × 3; count = vertices · time_count, sample after sample */
     TrpArray face_offsets;    /* indices; faces + 1 ascending corner offsets from 0; not given: all faces are triangles */
@@ -200,7 +201,7 @@ typedef struct TrpInstanceDesc {
     uint32_t mesh;                  /* the id of the mesh shown */
     const char* name;
     const float* world_from_object; /* 12 · time_count floats; null: identity */
-    uint32_t time_count;            /* default 1 */
+    uint32_t time_count;            /* 1 to 129, default 1 */
     uint32_t material_count;
     const uint32_t* materials;      /* material ids by slot, in place of the mesh's; TRP_NO_ID keeps the mesh's */
     float color[3];                 /* the object's colour, for nodes and lines that ask for it; default 1 */
