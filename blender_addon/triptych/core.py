@@ -173,7 +173,8 @@ class Scene:
     def add_mesh(self, mesh, materials):
         desc = abi.init("mesh_desc", abi.MeshDesc)
         desc.name = mesh.name.encode()
-        desc.positions = _array(mesh.positions)
+        desc.positions = _array(mesh.positions.reshape(-1, 3))
+        desc.time_count = len(mesh.positions) if mesh.positions.ndim == 3 else 1
         desc.corner_vertices = _array(mesh.corner_vertices)
         if len(mesh.corner_vertices):
             desc.face_offsets = _array(mesh.face_offsets)
@@ -191,7 +192,7 @@ class Scene:
         desc = abi.init("instance_desc", abi.InstanceDesc)
         desc.name, desc.mesh = instance.name.encode(), meshes[instance.mesh]
         matrix = _matrix(instance.world_from_object)
-        desc.world_from_object = _floats(matrix)
+        desc.world_from_object, desc.time_count = _floats(matrix), len(matrix) // 12
         desc.materials, desc.material_count = _ids(_named(instance.materials, materials)), len(instance.materials)
         desc.color[:] = instance.color
         desc.index = instance.index
@@ -243,7 +244,7 @@ class Scene:
         desc = abi.init("light_desc", abi.LightDesc)
         desc.name, desc.type = light.name.encode(), abi.LIGHT[light.type]
         matrix = _matrix(light.world_from_light)
-        desc.world_from_light = _floats(matrix)
+        desc.world_from_light, desc.time_count = _floats(matrix), len(matrix) // 12
         desc.falloff, desc.shape = abi.FALLOFF[light.falloff], abi.SHAPE[light.shape]
         desc.emission[:], desc.size[:] = light.emission, light.size
         for name in ("radius", "angle", "blend", "cast_shadow", "visible_camera", "group"):
@@ -263,7 +264,7 @@ class Scene:
         desc = abi.init("camera_desc", abi.CameraDesc)
         desc.name, desc.type, desc.fit = camera.name.encode(), abi.CAMERA[camera.type], abi.FIT[camera.fit]
         matrix = _matrix(camera.world_from_camera)
-        desc.world_from_camera = _floats(matrix)
+        desc.world_from_camera, desc.time_count = _floats(matrix), len(matrix) // 12
         desc.shift[:], desc.shutter[:] = camera.shift, camera.shutter
         for name in (
             *("field_of_view", "width", "clip_start", "clip_end", "aperture_radius", "focus_distance"),

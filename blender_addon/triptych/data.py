@@ -36,7 +36,7 @@ class Triangulation:
 @dataclass
 class Mesh:
     name: str
-    positions: np.ndarray  # n × 3 float32
+    positions: np.ndarray  # n × 3 float32, or time samples × n × 3
     face_offsets: np.ndarray  # faces + 1, uint32
     corner_vertices: np.ndarray  # uint32
     corner_normals: np.ndarray = None  # corners × 3, only where the mesh has split normals of its own
@@ -60,7 +60,7 @@ EDGE_MARKED = 2
 class Instance:
     name: str
     mesh: int
-    world_from_object: np.ndarray  # 3 × 4
+    world_from_object: np.ndarray  # 3 × 4, or time samples × 3 × 4
     materials: list = field(default_factory=list)  # by slot, in place of the mesh's; NONE keeps the mesh's
     color: tuple = (1.0, 1.0, 1.0)
     index: int = 0
@@ -132,7 +132,7 @@ class Material:
 class Light:
     name: str
     type: str  # point, spot, sun, area
-    world_from_light: np.ndarray  # 3 × 4
+    world_from_light: np.ndarray  # as world_from_object
     emission: tuple  # W/sr (point, spot), W/m² (sun), W/(m² sr) (area)
     radius: float = 0.0
     angle: float = -1.0  # negative: the default of the type
@@ -158,7 +158,7 @@ class World:
 class Camera:
     name: str
     type: str  # perspective, orthographic
-    world_from_camera: np.ndarray  # 3 × 4
+    world_from_camera: np.ndarray  # as world_from_object
     fit: str = "auto"  # auto, horizontal, vertical
     field_of_view: float = 0.69
     width: float = 6.0

@@ -7,7 +7,7 @@ import time
 import bpy
 import numpy as np
 
-from . import abi, compat, core, data, properties, settings
+from . import abi, compat, core, data, export_motion, properties, settings
 from .export_scene import export_scene, film_size
 
 _DISPLAY_SECONDS = 0.2  # between updates of the picture while it renders
@@ -71,7 +71,7 @@ class _Job:
         engine, depsgraph = self.engine, self.depsgraph
         method, values = self._settings()
         engine.update_stats("", "Exporting the scene")
-        scene = export_scene(depsgraph)
+        scene = export_scene(depsgraph, shutter=self._shutter(method))
         if self.stopped():
             return ""
         threads = int(values.get("threads", 0))
@@ -98,6 +98,13 @@ class _Job:
                 finally:
                     self.render = None
         return ""
+
+    def _shutter(self, method):
+        """None where nothing is to be blurred."""
+        source = self.depsgraph.scene
+        if self.engine.is_preview or not source.render.use_motion_blur or method not in export_motion.METHODS:
+            return None
+        return export_motion.Shutter(source, self.engine.frame_set)
 
     def stopped(self):
         """Whether the user has cancelled."""

@@ -6,23 +6,32 @@ from .export_camera import export_camera
 from .export_light import export_light
 from .export_material import export_material
 from .export_mesh import export_mesh
+from .export_motion import Motion, may_bend
 from .export_texture import Textures
 from .export_world import export_world
 from .transforms import rows
 
 
-def export_scene(depsgraph, triangulate=False, require_camera=True):
+def export_scene(depsgraph, triangulate=False, require_camera=True, shutter=None):
     """The data.Scene of an evaluated depsgraph.
 
-    triangulate: see export_mesh. ExportError where there is no usable camera and one is required.
+    triangulate: see export_mesh. shutter: an export_motion.Shutter, for motion blur. ExportError where there is no
+    usable camera and one is required.
     """
-    return _Exporter(depsgraph, triangulate).run(require_camera)
+    exporter = _Exporter(depsgraph, triangulate)
+    scene = exporter.run(require_camera)
+    if shutter is not None:
+        exporter.add_motion(shutter)
+    return scene
 
 
 def film_size(render):
     """(width, height) in pixels of the whole picture, border or not."""
     percent = render.resolution_percentage
     return max(render.resolution_x * percent // 100, 1), max(render.resolution_y * percent // 100, 1)
+
+
+_CAMERA = "camera"  # its key among the places of what is shown
 
 
 class _Exporter:
@@ -33,6 +42,8 @@ class _Exporter:
         self.textures = Textures(self.scene)
         self.meshes = {}
         self.materials = {}
+        self.places = {}  # as Motion takes them
+        self.bending = {}
         self.groups = {"": 0}
         for number, group in enumerate(getattr(depsgraph.view_layer, "lightgroups", ()), 1):
             self.groups[group.name] = number
@@ -43,20 +54,41 @@ class _Exporter:
         self._camera(source, require_camera)
         result.settings = settings.changed(source)
         result.world = export_world(source.world, self.textures, result.warn)
+        for key, instance, shown in self._shown():
+            if shown.type == "MESH":
+                self._instance(key, instance, shown)
+            elif shown.type == "LIGHT":
+                group = self.groups.get(getattr(shown, "lightgroup", ""), 0)
+                light = export_light(shown, instance.matrix_world.copy(), self.textures, result.warn, group)
+                result.lights.append(light)
+                self.places[key] = light, "world_from_light"
+            elif shown.type in {"VOLUME", "CURVES", "POINTCLOUD", "GPENCIL", "GREASEPENCIL"}:
+                result.warn(f"object '{shown.name}': {shown.type.lower()} objects are not supported; it is left out")
+        return result
+
+    def _shown(self):
+        """What the depsgraph shows: (a key that is the same at every time, instance, evaluated object)."""
         for instance in self.depsgraph.object_instances:
             shown = instance.object
             if not instance.show_self or (self.depsgraph.mode != "RENDER" and shown.original.hide_render):
                 continue
-            if shown.type == "MESH":
-                self._instance(instance, shown)
-            elif shown.type == "LIGHT":
-                group = self.groups.get(getattr(shown, "lightgroup", ""), 0)
-                result.lights.append(
-                    export_light(shown, instance.matrix_world.copy(), self.textures, result.warn, group)
-                )
-            elif shown.type in {"VOLUME", "CURVES", "POINTCLOUD", "GPENCIL", "GREASEPENCIL"}:
-                result.warn(f"object '{shown.name}': {shown.type.lower()} objects are not supported; it is left out")
-        return result
+            parent = instance.parent.original.as_pointer() if instance.parent else 0
+            yield (shown.original.as_pointer(), parent, *instance.persistent_id), instance, shown
+
+    def add_motion(self, shutter):
+        """Goes through the shutter's times, and back."""
+        motion = Motion(self.places, self.bending)
+        try:
+            for time in shutter.times:
+                shutter.go_to(time)
+                for key, instance, shown in self._shown():
+                    motion.note(key, instance.matrix_world, shown.data if key in self.bending else None)
+                if self.scene.cameras:
+                    camera = self.depsgraph.scene.camera.evaluated_get(self.depsgraph)
+                    motion.note(_CAMERA, camera.matrix_world)
+        finally:
+            shutter.go_to(shutter.now)
+        motion.finish(len(shutter.times), self.scene.warn)
 
     def _camera(self, source, required):
         camera = source.camera
@@ -73,8 +105,9 @@ class _Exporter:
             self.scene.warn(str(error))
             return
         self.scene.camera = 0
+        self.places[_CAMERA] = self.scene.cameras[0], "world_from_camera"
 
-    def _instance(self, instance, shown):
+    def _instance(self, key, instance, shown):
         mesh = self._mesh(shown.data)
         if mesh is None:
             return
@@ -91,6 +124,9 @@ class _Exporter:
         if any(own):
             result.materials = [self._material(material) for material in own]
         self.scene.instances.append(result)
+        self.places[key] = result, "world_from_object"
+        if may_bend(shown):
+            self.bending[key] = self.scene.meshes[mesh]
 
     def _mesh(self, mesh):
         """The index of an evaluated mesh, which objects may share; None where it has nothing to draw."""

@@ -3,7 +3,7 @@
 
 import bpy
 
-from . import abi, properties, settings
+from . import abi, export_motion, properties, settings
 
 ENGINE = "TRIPTYCH"
 
@@ -126,6 +126,29 @@ def _settings_panel(group):
     return type(name, (_Panel, bpy.types.Panel), content)
 
 
+class TRIPTYCH_RENDER_PT_motion_blur(_Panel, bpy.types.Panel):
+    bl_label = "Motion Blur"
+    bl_context = "render"
+    bl_order = -8
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        return context.engine == ENGINE and context.scene.triptych.method in export_motion.METHODS
+
+    def draw_header(self, context):
+        self.layout.prop(context.scene.render, "use_motion_blur", text="")
+
+    def draw(self, context):
+        render = context.scene.render
+        column = self._columns().column()
+        column.active = render.use_motion_blur
+        column.prop(render, "motion_blur_shutter")
+        if hasattr(render, "motion_blur_position"):
+            column.prop(render, "motion_blur_position")
+        column.prop(context.scene.triptych, "motion_steps")
+
+
 class TRIPTYCH_RENDER_PT_compare(_Panel, bpy.types.Panel):
     bl_label = "Compare"
     bl_context = "render"
@@ -228,6 +251,7 @@ class TRIPTYCH_LIGHT_PT_light(_Panel, bpy.types.Panel):
 
 _CLASSES = (
     TRIPTYCH_RENDER_PT_method,
+    TRIPTYCH_RENDER_PT_motion_blur,
     TRIPTYCH_RENDER_PT_compare,
     TRIPTYCH_VIEWLAYER_PT_passes,
     TRIPTYCH_MATERIAL_PT_coefficients,

@@ -142,6 +142,15 @@ def _method_property(methods):
     )
 
 
+_MOTION_STEPS = IntProperty(
+    name="Steps",
+    description="Times between opening and closing of the shutter at which what moves is looked at; straight between",
+    default=3,
+    min=2,
+    max=129,
+)
+
+
 def _scene_group():
     """The PropertyGroup of scene.triptych, by the library's tables."""
     SETTINGS.clear()
@@ -152,7 +161,7 @@ def _scene_group():
         methods = core.methods()
         SETTINGS.extend(core.settings())
         PASSES.extend(core.passes())
-    annotations = {"method": _method_property(methods)}
+    annotations = {"method": _method_property(methods), "motion_steps": _MOTION_STEPS}
     for setting in SETTINGS:
         name = settings.property_name(setting.name)
         annotations[name] = _setting_property(setting)
