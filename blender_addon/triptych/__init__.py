@@ -11,6 +11,7 @@ The modules, in the order in which data walks through them:
     gltf, gltf_mesh, glb        data to a .glb file, without the library
     engine, properties, panels      Blender's side: what is registered
     shading_sheet, lettering        a sheet that compares flat, Gouraud and Phong shading
+    ray_tree, ray_tree_panel        the rays of a pixel as curves and as a list
 """
 
 import atexit
@@ -28,9 +29,9 @@ bl_info = {
 
 def _modules():
     # Imported on demand, so that `import triptych.gltf` works in a script that never registers.
-    from . import engine, export_operator, panels, properties, shading_sheet
+    from . import engine, export_operator, panels, properties, ray_tree, ray_tree_panel, shading_sheet
 
-    return (properties, engine, panels, export_operator, shading_sheet)
+    return (properties, engine, panels, export_operator, shading_sheet, ray_tree, ray_tree_panel)
 
 
 _registered = []

@@ -27,6 +27,9 @@ FALLOFF = {"physical": 0, "linear": 1, "constant": 2}
 CAMERA = {"perspective": 0, "orthographic": 1}
 FIT = {"auto": 0, "horizontal": 1, "vertical": 2}
 SETTING_TYPES = ("BOOL", "INT", "FLOAT", "COLOR", "ENUM")
+RAY_KINDS = ("primary", "reflection", "transmission")
+RAY_ENDS = ("surface", "light", "background", "depth", "weight")
+NO_PARENT = 0xFFFFFFFF
 
 u32, i32, u64, f32, f64, text = c.c_uint32, c.c_int32, c.c_uint64, c.c_float, c.c_double, c.c_char_p
 floats = c.POINTER(f32)
@@ -281,6 +284,22 @@ class Callbacks(c.Structure):
     ]
 
 
+class Ray(c.Structure):
+    _fields_ = [
+        ("struct_size", u32),
+        ("kind", i32),
+        ("end", i32),
+        ("parent", u32),
+        ("object", text),
+        ("material", text),
+        ("instance", u32),
+        ("origin", f32 * 3),
+        ("direction", f32 * 3),
+        ("distance", f32),
+        *((name, f32 * 3) for name in ("position", "normal", "local", "weight", "intensity")),
+    ]
+
+
 class Statistics(c.Structure):
     _fields_ = [
         ("struct_size", u32),
@@ -349,6 +368,8 @@ FUNCTIONS = {
     "render_cancel": (i32, _handle),
     "render_read": (i32, _handle, text, u32, u32, u32, u32, floats, c.c_size_t),
     "render_write": (i32, _handle, text),
+    "render_trace_tree": (i32, _handle, u32, u32, c.POINTER(u32)),
+    "render_ray": (i32, _handle, u32, c.POINTER(Ray)),
     "render_statistics": (i32, _handle, c.POINTER(Statistics)),
 }
 

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 
 import bpy
 
-from . import data
+from . import data, settings
 from .export_scene import export_scene
 
 RENDER_SLOT = "Triptych Export"
@@ -64,6 +64,20 @@ def export_as_rendered(scene, view_layer=None, triangulate=False):
     if "scene" not in done:
         raise data.ExportError(f"scene '{scene.name}': Blender did not start the export")
     return done["scene"]
+
+
+def export_to_render(scene, view_layer=None):
+    """As export_as_rendered, for a render by the add-on itself: with the scene's number of threads among the settings.
+
+    ExportError where there is no camera to render from.
+    """
+    if scene.camera is None:
+        raise data.ExportError(f"scene '{scene.name}': there is no camera")
+    result = export_as_rendered(scene, view_layer)
+    if result.camera == data.NONE:
+        raise data.ExportError(result.warnings[0])  # of the camera, which is exported first
+    settings.set_threads(result.settings, scene)
+    return result
 
 
 @contextmanager

@@ -134,17 +134,20 @@ class Scene:
             self._handle = c.c_void_p()
 
     def fill(self, scene):
-        """Adds everything of a data.Scene, whose references are places in its lists. Error names the item."""
+        """Adds everything of a data.Scene, whose references are places in its lists. Error names the item.
+
+        Gives the ids of its instances.
+        """
         textures = [self.add_texture(texture) for texture in scene.textures]
         materials = [self.add_material(material, textures) for material in scene.materials]
         meshes = [self.add_mesh(mesh, materials) for mesh in scene.meshes]
-        for instance in scene.instances:
-            self.add_instance(instance, meshes, materials)
+        instances = [self.add_instance(instance, meshes, materials) for instance in scene.instances]
         for light in scene.lights:
             self.add_light(light)
         self.set_world(scene.world, textures)
         cameras = [self.add_camera(camera) for camera in scene.cameras]
         abi.call("scene_set_camera", self._handle, abi.NO_ID if scene.camera == data.NONE else cameras[scene.camera])
+        return instances
 
     def commit(self, threads=0):
         """Makes the snapshot that renders see."""
@@ -289,6 +292,23 @@ def _named(places, ids):
 # --------------------------------------------------------------------------------------------------------------- render
 
 
+class Ray:
+    """A ray of a pixel's tree, in world space.
+
+    kind (of abi.RAY_KINDS), end (of abi.RAY_ENDS), parent (its place in the list, or data.NONE), origin, direction.
+    Where it ends at a surface: mesh and material (names), instance (an id), position, normal; there and at a light:
+    distance (metres). intensity (W/(m² sr)) is local + Σ weight · intensity of its children.
+    """
+
+    def __init__(self, row):
+        self.kind, self.end = abi.RAY_KINDS[row.kind], abi.RAY_ENDS[row.end]
+        self.parent = data.NONE if row.parent == abi.NO_PARENT else row.parent
+        self.mesh, self.material, self.instance = _words(row.object), _words(row.material), row.instance
+        self.distance = row.distance
+        for name in ("origin", "direction", "position", "normal", "local", "weight", "intensity"):
+            setattr(self, name, tuple(getattr(row, name)))
+
+
 class Render:
     """A render of a scene's last commit by a method. Use it as a context manager."""
 
@@ -360,6 +380,22 @@ class Render:
     def write(self, path):
         """Writes .exr or .png."""
         abi.call("render_write", self._handle, os.fsencode(path))
+
+    def trace_tree(self, x, y, most):
+        """[Ray] of the tree of a pixel, from the bottom left, parents before children. Error for more than `most`."""
+        count = abi.u32()
+        abi.call("render_trace_tree", self._handle, x, y, c.byref(count))
+        if count.value > most:
+            raise abi.Error(
+                abi.STATUS.index("MEMORY"),
+                f"the tree has {count.value} rays, of which at most {most} can be shown; "
+                "a lower Depth or a greater Least weight makes it smaller",
+            )
+        row, rays = abi.Ray(struct_size=c.sizeof(abi.Ray)), []
+        for index in range(count.value):
+            abi.call("render_ray", self._handle, index, c.byref(row))
+            rays.append(Ray(row))
+        return rays
 
     def statistics(self):
         """abi.Statistics of the last run."""

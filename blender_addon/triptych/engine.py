@@ -63,7 +63,7 @@ class _Job:
         self.render = None
         scene = depsgraph.scene
         self.film = film_size(scene.render)
-        self.window = _window(scene.render, self.film, engine)
+        self.window = (0, 0, *self.film) if engine.is_preview else window(scene.render, self.film)
         self.shown = time.monotonic()
 
     def run(self):
@@ -183,9 +183,9 @@ class _Job:
             self.engine.end_result(result)
 
 
-def _window(render, film, engine):
+def window(render, film):
     """(x, y, width, height) of the border, or of the whole film, in pixels from the bottom left."""
-    if not render.use_border or engine.is_preview:
+    if not render.use_border:
         return (0, 0, *film)
 
     def pixels(least, most, size):

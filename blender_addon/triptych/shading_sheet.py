@@ -10,8 +10,8 @@ from math import floor, log10
 import bpy
 import numpy as np
 
-from . import abi, core, data, lettering, settings
-from .as_rendered import export_as_rendered
+from . import abi, core, data, lettering
+from .as_rendered import export_to_render
 
 METHODS = ("flat", "gouraud", "phong")
 IMAGE = "Triptych Shadings"
@@ -140,22 +140,16 @@ def render(scene, view_layer, progress):
     progress(fraction of the whole) is called now and then.
     """
     abi.library()
-    if scene.camera is None:
-        raise data.ExportError(f"scene '{scene.name}': there is no camera")
-    source = export_as_rendered(scene, view_layer)
-    if source.camera == data.NONE:
-        raise data.ExportError(source.warnings[0])  # of the camera, which is exported first
-    values = dict(source.settings)
-    settings.set_threads(values, scene)
+    source = export_to_render(scene, view_layer)
     labels = {name: label for name, label, _ in core.methods()}
     pictures = {}
     with core.Scene() as core_scene:
         core_scene.fill(source)
-        core_scene.commit(int(values.get("threads", 0)))
+        core_scene.commit(int(source.settings.get("threads", 0)))
         for done, method in enumerate(METHODS):
             with core.Render(core_scene, method) as job:
                 job.set_film(*source.film)
-                for name, value in values.items():
+                for name, value in source.settings.items():
                     job.set(name, value)
                 job.run(lambda state, done=done: progress((done + state.fraction) / len(METHODS)) or True)
                 pictures[labels[method]] = job.read("Combined", 0, 0, *source.film)

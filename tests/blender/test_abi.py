@@ -30,6 +30,7 @@ STRUCTURES = {
     "TrpProgress": abi.Progress,
     "TrpTile": abi.Tile,
     "TrpCallbacks": abi.Callbacks,
+    "TrpRay": abi.Ray,
     "TrpStatistics": abi.Statistics,
 }
 _SIZES = {"uint32_t": 4, "int32_t": 4, "uint64_t": 8, "float": 4, "double": 8, "char": 1, "void": 1}
