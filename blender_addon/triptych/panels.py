@@ -30,6 +30,7 @@ _GROUP_LABELS = {
     "": "Sampling",
     "raster": "Rasterizer",
     "trace": "Ray Tracing",
+    "adaptive": "Adaptive Sampling",
     "film": "Film",
     "lights": "Lights",
 }

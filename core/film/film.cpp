@@ -46,7 +46,8 @@ Film::Film(const Window& window, const PassList& passes) : window_(window), pass
     blocks_across_ = (window.x + window.w - 1) / kBlockSide - first_block_x_ + 1;
     const uint32_t blocks_up = (window.y + window.h - 1) / kBlockSide - first_block_y_ + 1;
     const size_t blocks = size_t{blocks_across_} * blocks_up;
-    block_samples_.assign(blocks, 0);
+    samples_.assign(blocks, {});
+    noise_.resize(blocks);
     // Cleared block by block, by the threads that fill them.
     begun_.assign(blocks, 0);
     const size_t bytes = this->bytes();
@@ -68,7 +69,8 @@ size_t Film::bytes() const {
 }
 
 void Film::clear() {
-    std::fill(block_samples_.begin(), block_samples_.end(), 0);
+    std::fill(samples_.begin(), samples_.end(), std::array<uint32_t, 16>{});
+    for (auto& noise : noise_) noise.reset();
     std::fill(begun_.begin(), begun_.end(), uint8_t{0});
 }
 
@@ -90,8 +92,16 @@ BlockSums Film::block(uint32_t block_x, uint32_t block_y) {
     return sums;
 }
 
-void Film::add_samples(uint32_t block_x, uint32_t block_y, uint32_t samples) {
-    block_samples_[block_index(block_x, block_y)] += samples;
+void Film::add_samples(uint32_t block_x, uint32_t block_y, uint32_t samples, uint32_t packets) {
+    std::array<uint32_t, 16>& taken = samples_[block_index(block_x, block_y)];
+    for (size_t p = 0; p < taken.size(); ++p)
+        if (packets >> p & 1) taken[p] += samples;
+}
+
+BlockNoise& Film::noise(uint32_t block_x, uint32_t block_y) {
+    std::unique_ptr<BlockNoise>& noise = noise_[block_index(block_x, block_y)];
+    if (!noise) noise = std::make_unique<BlockNoise>();
+    return *noise;
 }
 
 void Film::read(PassId pass, uint32_t x, uint32_t y, uint32_t w, uint32_t h, float* out) const {
@@ -100,11 +110,12 @@ void Film::read(PassId pass, uint32_t x, uint32_t y, uint32_t w, uint32_t h, flo
         for (uint32_t begin = x; begin < x + w;) {
             // The part of the row that lies in one block.
             const uint32_t end = std::min((begin / kBlockSide + 1) * kBlockSide, x + w);
-            const uint32_t block = block_index(begin / kBlockSide, row / kBlockSide), samples = block_samples_[block];
-            const float scale = kPasses[pass].averaged && samples ? 1 / static_cast<float>(samples) : 1;
+            const uint32_t block = block_index(begin / kBlockSide, row / kBlockSide);
             const float* first = BlockSums(passes_, values(block)).channel(pass, 0);
             for (uint32_t column = begin; column < end; ++column) {
                 const uint32_t lane = lane_at(column % kBlockSide, row % kBlockSide);
+                const uint32_t samples = samples_[block][lane >> 4];
+                const float scale = kPasses[pass].averaged && samples ? 1 / static_cast<float>(samples) : 1;
                 for (size_t c = 0; c < count; ++c)
                     *out++ = pass == kSampleCount ? static_cast<float>(samples)
                              : begun_[block]      ? first[c * kBatch + lane] * scale

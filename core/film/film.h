@@ -79,6 +79,13 @@ class BlockSums {
     float* values_ = nullptr;
 };
 
+// What is known of the noise in a block, for adaptive sampling.
+struct BlockNoise {
+    LaneVec3 squares{};      // of the sums of rounds, added up
+    uint32_t open = 0xFFFF;  // packets that need more samples, a bit to each
+    uint32_t edges = 0;      // packets that see an edge
+};
+
 class Film {
   public:
     // Throws Error where the picture is empty, or larger than can be held.
@@ -93,9 +100,11 @@ class Film {
     // As it was when it was made.
     void clear();
     // The block at grid place (block_x, block_y), cleared when it is first asked for: methods add to it, one thread at
-    // a time, and then say how many samples they have added.
+    // a time, and then say how many samples they have added, to which of its packets.
     BlockSums block(uint32_t block_x, uint32_t block_y);
-    void add_samples(uint32_t block_x, uint32_t block_y, uint32_t samples);
+    void add_samples(uint32_t block_x, uint32_t block_y, uint32_t samples, uint32_t packets = 0xFFFF);
+    // Of the block; made when it is first asked for.
+    BlockNoise& noise(uint32_t block_x, uint32_t block_y);
     // The pixels of a pass, channels interleaved; sums are divided by the number of samples.
     void read(PassId pass, uint32_t x, uint32_t y, uint32_t w, uint32_t h, float* out) const;
 
@@ -106,7 +115,8 @@ class Film {
     Window window_;
     PassList passes_;
     uint32_t first_block_x_, first_block_y_, blocks_across_;
-    std::vector<uint32_t> block_samples_;
+    std::vector<std::array<uint32_t, 16>> samples_;  // of each packet of each block
+    std::vector<std::unique_ptr<BlockNoise>> noise_;
     std::vector<uint8_t> begun_;  // blocks whose memory has been cleared
     struct Free {
         void operator()(float* p) const;

@@ -21,6 +21,7 @@ const char* const kLineColors[] = {"line", "object", "material", nullptr};
 const char* const kHidden[] = {"none", "faint", "dashed", nullptr};
 
 constexpr const char kLineMethods[] = "wireframe hidden_line";
+constexpr const char kRayMethods[] = "ray_casting ray_tracing path_tracing";
 constexpr const char kTreeMethods[] = "ray_tracing path_tracing";
 
 Vec3 color_of(const double* v) {
@@ -33,6 +34,15 @@ const SettingRow kSettings[] = {
     {TRP_TYPE_INT, "samples", "Samples",
      "Rays through each pixel; in the rasterizer, samples of large lights in each pixel", "", "16", 1, 65536, nullptr,
      kSurfaceMethods, "path_tracing=128", [](Settings& s, const double* v) { s.samples = static_cast<uint32_t>(*v); }},
+    {TRP_TYPE_FLOAT, "adaptive.threshold", "Noise threshold",
+     "Pixels whose noise has fallen below this get no more samples: the standard error over the square root of the "
+     "radiance, 0.01 to be fine. 0 gives all pixels all samples",
+     "", "0", 0, 10, nullptr, kRayMethods, "",
+     [](Settings& s, const double* v) { s.adaptive.threshold = static_cast<float>(*v); }},
+    {TRP_TYPE_INT, "adaptive.least_samples", "Least samples",
+     "Samples that every pixel gets before its noise is looked at; four times as many at edges of objects", "", "16", 8,
+     65536, nullptr, kRayMethods, "",
+     [](Settings& s, const double* v) { s.adaptive.least_samples = static_cast<uint32_t>(*v); }},
     {TRP_TYPE_INT, "seed", "Seed", "Another seed gives other noise", "", "0", 0, 2147483647, nullptr, kSurfaceMethods,
      "", [](Settings& s, const double* v) { s.seed = static_cast<uint32_t>(*v); }},
     {TRP_TYPE_INT, "threads", "Threads", "Threads that work; 0 uses every core", "", "0", 0, 1024, nullptr, "*", "",

@@ -28,6 +28,12 @@ struct TraceLimits {
     bool rough = false;                        // mirror and transmitted rays are scattered like the highlight
 };
 
+// Pixels get fewer samples where that leaves no more noise than this.
+struct AdaptiveSampling {
+    float threshold = 0;  // of a pixel's standard error over the square root of its radiance; 0: all get all
+    uint32_t least_samples = 16;
+};
+
 struct Settings {
     uint32_t samples = 16;
     uint32_t seed = 0;
@@ -49,6 +55,7 @@ struct Settings {
     uint32_t raster_samples = 8;
     LineSettings lines;
     TraceLimits trace;
+    AdaptiveSampling adaptive;
 };
 
 struct SettingRow {

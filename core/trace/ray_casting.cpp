@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/clock.h"
+#include "film/adaptive.h"
 #include "film/pixel_random.h"
 #include "film/surface_passes.h"
 #include "shading/footprints.h"
@@ -37,7 +38,7 @@ struct Caster {
 
     void tile(const TileWork& work) const;
     void block(uint32_t block_x, uint32_t block_y, const TileWork& work, Workspace& w) const;
-    void layers(uint32_t block_x, uint32_t block_y, uint32_t sample, Workspace& w) const;
+    uint32_t layers(uint32_t block_x, uint32_t block_y, uint32_t sample, Workspace& w) const;
     void shade(uint32_t block_x, uint32_t block_y, uint32_t sample, Coherence coherence, Workspace& w) const;
     void add_seen_lights(Workspace& w) const;
 };
@@ -80,20 +81,22 @@ void Caster::add_seen_lights(Workspace& w) const {
     }
 }
 
-// One sample of all pixels of a block: the nearest surfaces, and where they have holes, those behind.
-void Caster::layers(uint32_t block_x, uint32_t block_y, uint32_t sample, Workspace& w) const {
+// One sample of the active pixels of a block: the nearest surfaces, and where they have holes, those behind. Returns
+// the packets that see an edge.
+uint32_t Caster::layers(uint32_t block_x, uint32_t block_y, uint32_t sample, Workspace& w) const {
     auto start = Clock::now();
     make_primary_rays(maker, block_x, block_y, sample, w.rays);
-    std::fill_n(w.active, kBatch, uint8_t{1});
     for (int c = 0; c < 3; ++c) std::fill_n(w.throughput[c], kBatch, 1.0f);
     uint8_t first[kBatch] = {};
     float* const ray_count = w.sums.channel(kRayCount, 0);
-    uint64_t primary_rays = kBatch, primary_time = 0;
+    uint64_t primary_rays = 0, primary_time = 0;
+    uint32_t edges = 0;
     // Packets are whole and their lanes fixed to the film in the first layer alone.
     Coherence coherence = Coherence::coherent;
     for (int layer = 0; layer < kGreatestLayers; ++layer) {
         if (layer > 0) start = Clock::now();
         for (int i = 0; i < kBatch && ray_count; ++i) ray_count[i] += w.active[i];
+        primary_rays += static_cast<uint64_t>(std::count(w.active, w.active + kBatch, 1));
         trace_primary(snapshot.rays->embree(), w.active, coherence, w.rays);
         read_hits(w.rays, w.active, w.points);
         if (sees_lights) add_seen_lights(w);
@@ -104,6 +107,7 @@ void Caster::layers(uint32_t block_x, uint32_t block_y, uint32_t sample, Workspa
                            job.settings.transparent, w.sums);
         if (!found.any_hit) break;
         shade(block_x, block_y, sample, coherence, w);
+        if (layer == 0 && job.settings.adaptive.threshold > 0) edges = packets_at_edges(w.points);
         add_surfaces({snapshot, w.points, w.coefficients, w.radiance, layer > 0 ? &w.throughput : nullptr,
                       wants_shadow_pass ? &w.arriving : nullptr, wants_parts ? &w.diffuse : nullptr,
                       job.settings.illumination.ambient},
@@ -118,7 +122,6 @@ void Caster::layers(uint32_t block_x, uint32_t block_y, uint32_t sample, Workspa
             if (w.throughput.get(i) == Vec3(0, 0, 0)) continue;
             w.active[i] = 1;
             any_left = true;
-            ++primary_rays;
             pass_surface(w.rays, i, w.points, maker.view.clip_end);
         }
         if (!any_left) break;
@@ -127,16 +130,15 @@ void Caster::layers(uint32_t block_x, uint32_t block_y, uint32_t sample, Workspa
     if (sample == 0) finish_depth(first, w.sums);
     job.counts->primary_rays += primary_rays;
     job.counts->primary_time += primary_time;
+    return edges;
 }
 
 void Caster::block(uint32_t block_x, uint32_t block_y, const TileWork& work, Workspace& w) const {
     w.sums = job.film->block(block_x, block_y);
     prepare_block(maker, block_x, block_y, w.rays);
-    for (uint32_t sample = work.first_sample; sample < work.end_sample; ++sample) {
-        if (*job.cancelled) return;
-        layers(block_x, block_y, sample, w);
-        job.film->add_samples(block_x, block_y, 1);
-    }
+    take_samples(
+        job, work, block_x, block_y, w.active, [&](uint32_t sample) { return layers(block_x, block_y, sample, w); },
+        [] {});
 }
 
 void Caster::tile(const TileWork& work) const {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/clock.h"
+#include "film/adaptive.h"
 #include "film/pixel_random.h"
 #include "shading/footprints.h"
 
@@ -62,9 +63,9 @@ void Tracer::fade_primary(TreeWorkspace& w) const {
     }
 }
 
-// One sample of all pixels of a block: the nearest surfaces, and where they have holes, those behind. w.active: the
-// lanes that are wanted.
-void Tracer::primary(uint32_t block_x, uint32_t block_y, uint32_t sample, TreeWorkspace& w) const {
+// One sample of the active pixels of a block: the nearest surfaces, and where they have holes, those behind. Returns
+// the packets that see an edge.
+uint32_t Tracer::primary(uint32_t block_x, uint32_t block_y, uint32_t sample, TreeWorkspace& w) const {
     auto start = Clock::now();
     float* const ray_count = w.sums.channel(kRayCount, 0);
     make_primary_rays(maker, block_x, block_y, sample, w.primary);
@@ -75,6 +76,7 @@ void Tracer::primary(uint32_t block_x, uint32_t block_y, uint32_t sample, TreeWo
     const bool starts_inside = w.start != Media::kOutside;
     uint8_t first[kBatch] = {};
     uint64_t primary_rays = 0, primary_time = 0;
+    uint32_t edges = 0;
     // Packets are whole and their lanes fixed to the film in the first layer alone.
     Coherence coherence = Coherence::coherent;
     for (int layer = 0; layer < kGreatestLayers; ++layer) {
@@ -159,6 +161,7 @@ void Tracer::primary(uint32_t block_x, uint32_t block_y, uint32_t sample, TreeWo
     if (sample == 0) finish_depth(first, w.sums);
     job.counts->primary_rays += primary_rays;
     job.counts->primary_time += primary_time;
+    return edges;
 }
 
 // The last rays of the stack, as many as a batch holds, are traced. Returns their number.
@@ -309,14 +312,14 @@ void Tracer::begin_block(uint32_t block_x, uint32_t block_y, TreeWorkspace& w) c
 
 void Tracer::block(uint32_t block_x, uint32_t block_y, const TileWork& work, TreeWorkspace& w) const {
     begin_block(block_x, block_y, w);
-    for (uint32_t sample = work.first_sample; sample < work.end_sample; ++sample) {
-        if (*job.cancelled) return;
-        std::fill_n(w.active, kBatch, uint8_t{1});
-        primary(block_x, block_y, sample, w);
-        drain(kBatch, w);
-        job.film->add_samples(block_x, block_y, 1);
-    }
-    drain(1, w);
+    take_samples(
+        job, work, block_x, block_y, w.active,
+        [&](uint32_t sample) {
+            const uint32_t edges = primary(block_x, block_y, sample, w);
+            drain(kBatch, w);
+            return edges;
+        },
+        [&] { drain(1, w); });
 }
 
 void Tracer::tile(const TileWork& work) const {

@@ -92,7 +92,7 @@ struct Tracer {
     void drain(size_t least, TreeWorkspace& w) const;
 
     // Of primary rays.
-    void primary(uint32_t block_x, uint32_t block_y, uint32_t sample, TreeWorkspace& w) const;
+    uint32_t primary(uint32_t block_x, uint32_t block_y, uint32_t sample, TreeWorkspace& w) const;
     void add_seen_lights(TreeWorkspace& w) const;
     void fade_primary(TreeWorkspace& w) const;
 

@@ -13,7 +13,9 @@ bool has_pass(const char* name, const std::string& method) {
         info.struct_size = sizeof info;
         check(trp_pass_info(p, &info));
         if (std::string(info.name) != name) continue;
-        return (" " + std::string(info.methods) + " ").find(" " + method + " ") != std::string::npos;
+        std::string methods(1, ' ');
+        methods.append(info.methods).append(1, ' ');
+        return methods.find(" " + method + " ") != std::string::npos;
     }
     return false;
 }
@@ -39,7 +41,9 @@ TEST(LightParts, AddUpToThePicture) {
     for (const char* method : {"ray_casting", "ray_tracing", "path_tracing"}) {
         std::vector<const char*> parts;
         for (const char* part : kParts)
-            if (has_pass(part, method)) { parts.push_back(part); }
+            if (has_pass(part, method)) {
+                parts.push_back(part);
+            }
         EXPECT_GE(parts.size(), 5u);
         Render render(scene, 48, 32, {{"samples", "4"}, {"shading.ambient", "0.3,0.2,0.1"}}, parts, method);
         const Image picture = render.run().read();
