@@ -2,7 +2,9 @@
 """Mitsuba's Cornell box: a box of ±1, as Mitsuba 3's `cornell_box` dictionary has it, turned from Y up to Z up.
 
 Quads, linear Rec. 709 reflectances, the light's radiance and the camera are Mitsuba's numbers; they differ from the
-measured box (cornell_box.py). The light hangs 0.01 below the ceiling and emits downwards. 256 × 256 pixels.
+measured box (cornell_box.py). The light hangs 0.01 below the ceiling and emits downwards; a black back keeps light from
+going up through it, as Mitsuba's surfaces are black from behind where Triptych's one-sided ones are not there. 256 × 256
+pixels.
 """
 
 import math
@@ -14,6 +16,7 @@ import shapes
 WHITE = (0.885809, 0.698859, 0.666422)
 GREEN = (0.105421, 0.37798, 0.076425)
 RED = (0.570068, 0.0430135, 0.0443706)
+BLACK = (0.0, 0.0, 0.0)
 RADIANCE = (18.387, 13.9873, 6.75357)
 
 # Corners (x, y, z) in Mitsuba's frame: y up, the camera looks along −z. Fronts are counter-clockwise.
@@ -23,6 +26,9 @@ QUADS = {
          (0.22999998927116394, 0.9900000178419068, -0.17999999783933163),
          (0.22999998927116394, 0.9900000012315795, 0.1999999973922968),
          (-0.22999998927116394, 0.9900000012315795, 0.1999999973922968)],
+    ]),
+    "Light Back": (BLACK, [
+        [(-0.23, 0.9905, -0.18), (0.23, 0.9905, -0.18), (0.23, 0.9905, 0.2), (-0.23, 0.9905, 0.2)],
     ]),
     "Floor": (WHITE, [
         [(-0.9999999403953552, -0.9999999562886117, 1.0),
@@ -120,7 +126,7 @@ def turned(points):
 def build():
     common.start("Cornell Box of Mitsuba", 256, 256)
     materials = {WHITE: common.diffuse("White", WHITE), GREEN: common.diffuse("Green", GREEN),
-                 RED: common.diffuse("Red", RED)}
+                 RED: common.diffuse("Red", RED), BLACK: common.diffuse("Black", BLACK)}
     light = common.emitter("Light", RADIANCE, WHITE)
     for name, (color, quads) in QUADS.items():
         corners = turned(quads).reshape(-1, 3)

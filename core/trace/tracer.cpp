@@ -201,7 +201,8 @@ Found Tracer::end_rays(int count, TreeWorkspace& w) const {
     const bool any_seen = any_area_lights && see_area_lights(snapshot.lights, false, w.secondary, w.active, w.seen);
     for (int i = 0; i < count; ++i) {
         PathRay& ray = w.rays[i];
-        const bool at_light = any_seen && w.seen.t[i] > 0;
+        // A ray that counts nothing of lamps goes on behind them: they are light, not bodies.
+        const bool at_light = any_seen && w.seen.t[i] > 0 && !ray.lamps_sampled;
         const float distance = at_light                      ? w.seen.t[i]
                                : w.points.slot[i] == kNoSlot ? std::numeric_limits<float>::infinity()
                                                              : w.points.depth[i];
@@ -210,7 +211,7 @@ Found Tracer::end_rays(int count, TreeWorkspace& w) const {
         if (RayNode* const node = w.node_of(ray)) node->weight = node->weight * faded;
         if (!at_light) continue;
         const Vec3 radiance = w.seen.radiance.get(i);
-        if (!ray.lamps_sampled) gain(ray, radiance, w);
+        gain(ray, radiance, w);
         w.points.slot[i] = kNoSlot;
         w.active[i] = 0;
         if (RayNode* const node = w.node_of(ray)) {

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Brightness against Cycles: one diffuse plane under one light without bounces. The mean over lit pixels within 1 %."""
+"""Brightness against Cycles. The mean over lit pixels within 1 %.
+
+One diffuse plane under one light without bounces, and then path tracing: diffuse walls, mirrors and glass.
+"""
 
 from math import pi
 
@@ -224,4 +227,47 @@ def test_principled_diffuse(scene):
     compat.principled_socket(node, "base").default_value = (0.7, 0.5, 0.2, 1)
     scene.objects["Plane"].material_slots[0].material = material
     stage.light(scene, "POINT", (0.5, 0.3, 2), 200, shadow_soft_size=0)
+    compare(scene)
+
+
+def ball(scene, location, radius=1.0):
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=96, ring_count=48, radius=radius, location=location)
+    made = bpy.context.object
+    for polygon in made.data.polygons:
+        polygon.use_smooth = True
+    return made
+
+
+def every_bounce(scene):
+    settings = scene.cycles
+    settings.max_bounces = settings.diffuse_bounces = settings.glossy_bounces = settings.transmission_bounces = 24
+    settings.caustics_reflective = settings.caustics_refractive = True
+    settings.blur_glossy = 0
+    scene.triptych.method = "path_tracing"
+    scene.world.use_nodes = True
+    scene.world.node_tree.nodes["Background"].inputs["Color"].default_value = (0.6, 0.8, 1.0, 1)
+
+
+@pytest.mark.parametrize("shader", ["ShaderNodeBsdfDiffuse", "ShaderNodeBsdfGlass", "ShaderNodeBsdfGlossy"])
+def test_paths(scene, shader):
+    """A ball on the plane under a sky: light goes between them, through the ball and by its mirror."""
+    every_bounce(scene)
+    values = {} if shader == "ShaderNodeBsdfDiffuse" else {"Roughness": 0.0}
+    stage.material(ball(scene, (0.3, 0, 1.0)), shader, Color=(0.9, 0.8, 0.7), **values)
+    stage.camera(scene, (0, -5, 4), (0, 0, 0.7))
+    compare(scene)
+
+
+def test_paths_in_a_room(scene):
+    """Walls that light each other, from an area light."""
+    every_bounce(scene)
+    scene.world.node_tree.nodes["Background"].inputs["Strength"].default_value = 0
+    bpy.ops.mesh.primitive_cube_add(size=4, location=(0, 0, 2))
+    room = bpy.context.object
+    stage.material(room, Color=(0.7, 0.6, 0.5))
+    bpy.data.objects.remove(scene.objects["Plane"])
+    stage.material(ball(scene, (0.3, 0, 1.0), 0.7), Color=(0.2, 0.5, 0.8))
+    lamp = stage.light(scene, "AREA", (0, 0, 3.9), 60, shape="SQUARE", size=1)
+    lamp.visible_camera = False
+    stage.camera(scene, (0, -1.9, 2), (0, 0, 1.5), lens=25)
     compare(scene)

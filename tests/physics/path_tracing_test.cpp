@@ -43,6 +43,8 @@ TEST(PathTracing, AClosedRoomThatGlows) {
     });
     scene.object(inwards(box({-1, -1, -1}, {2, 1, 1})), material);
     scene.object(box({-0.5f, -0.2f, -1}, {0, 0.3f, 0}), material);
+    // A lamp that gives next to nothing takes nothing either: lamps are light, and no bodies.
+    scene.light(TRP_LIGHT_AREA, {1e-6f, 1e-6f, 1e-6f}, look_at({0.5f, 0, 0.7f}, {0.5f, 0, 0}, {0, 1, 0}));
     scene.camera(look_at({1.5f, -0.8f, 0.5f}, {0, 0, -0.3f}));
     const Image image = path_traced(scene, 32, 32, {{"samples", "256"}});
     EXPECT_NEAR(mean(image, 0), 1 / 0.3, 0.02);
