@@ -27,7 +27,7 @@ TIMEOUT = 1800  # seconds
 @dataclass
 class Benchmark:
     names: list[str]  # of its figures
-    program: str
+    program: str  # of bin/ in the build, or of tests/benchmarks/, where it ends in .py
     scene: str  # empty: it makes its own
     arguments: list[str] = field(default_factory=list)
 
@@ -51,6 +51,14 @@ def raster(name: str, goal: float, *arguments: str) -> Benchmark:
     return Benchmark([name], "raster_bench", "", ["--name", name, "--goal", str(goal), *arguments])
 
 
+def cycles(scene: str) -> list[Benchmark]:
+    name = f"ray_tracing.cycles.{scene}"
+    return [
+        Benchmark([f"{name}{end}"], "cycles_bench.py", "", [scene, *option])
+        for end, option in (("", []), (".rough", ["--rough"]))
+    ]
+
+
 # Lights stand where the camera sees their shadows; metres, Z up.
 BENCHMARKS = [
     ray_casting("tower_of_meshes", "-4 -17.5 8.5", 1.5),
@@ -61,6 +69,9 @@ BENCHMARKS = [
     ray_tracing("still_life", 2),
     ray_tracing("whitted_spheres", 4),
     Benchmark(["lamps"], "lamps_bench", "", ["--goal", "10"]),
+    Benchmark(["ray_tracing.povray"], "povray_bench.py", ""),
+    *cycles("whitted_spheres"),
+    *cycles("still_life"),
     Benchmark(
         ["load.tower_of_meshes", "memory.tower_of_meshes"],
         "load_bench",
@@ -108,6 +119,10 @@ def scene_file(name: str) -> Path:
 
 def rows_of(benchmark: Benchmark, directory: Path, threads: int, repeats: int) -> list[dict]:
     command = [str(directory / "bin" / benchmark.program)]
+    if benchmark.program.endswith(".py"):
+        # Blender as a module, which is built nowhere and stands in the one place.
+        python, program = ROOT / "build/bpy/bin/python", ROOT / "tests/benchmarks" / benchmark.program
+        command = [str(python), str(program), "--build", str(directory)]
     command += [str(scene_file(benchmark.scene))] if benchmark.scene else []
     command += [*benchmark.arguments, "--threads", str(threads), "--repeats", str(repeats)]
     try:
