@@ -1,4 +1,4 @@
-// Well-distributed random numbers, keyed by pixel, sample and dimension, over any lane width.
+// Well-distributed random numbers, keyed by sequence, index and dimension, over any lane width.
 //
 // Pairs of dimensions are Owen-scrambled (0,2)-sequences with shuffled indices (Burley, "Practical Hash-based Owen
 // Scrambling", 2020), hashed by Laine and Karras's function with Vegdahl's constants. The second Sobol' dimension comes
@@ -79,9 +79,10 @@ hn::Vec<D> unit_float(D d, VU bits) {
     return hn::Mul(hn::ConvertTo(d, hn::BitCast(di, hn::ShiftRight<8>(bits))), hn::Set(d, 0x1p-24f));
 }
 
-// As below, for a sample of each lane, whose number is given with its bits reversed.
+// The pair of numbers at an index of a sequence: `key` says which sequence, `reversed` is the index with its bits
+// reversed, `pair` counts the pairs of dimensions.
 template <class D, class VU>
-void sobol_pair_of(D d, VU key, VU reversed, uint32_t pair, hn::Vec<D>& u, hn::Vec<D>& v) {
+void sobol_pair(D d, VU key, VU reversed, uint32_t pair, hn::Vec<D>& u, hn::Vec<D>& v) {
     const hn::RebindToUnsigned<D> du;
     const VU seed = mix_bits(du, hn::Xor(key, hn::Set(du, pair * 0x9E3779B9u + 0x7F4A7C15u)));
     const VU seed_u = hn::Xor(hn::Mul(seed, hn::Set(du, 0x2C1B3C6Du)), hn::Set(du, 0x297A2D39u));
@@ -89,15 +90,6 @@ void sobol_pair_of(D d, VU key, VU reversed, uint32_t pair, hn::Vec<D>& u, hn::V
     const VU index = reverse_bits(du, laine_karras(du, reversed, seed));
     u = unit_float(d, reverse_bits(du, laine_karras(du, index, seed_u)));
     v = unit_float(d, reverse_bits(du, laine_karras(du, pascal(du, index), seed_v)));
-}
-
-// The pair of numbers of a sample: `key` is a hash of pixel and seed, `pair` counts the pairs of dimensions.
-template <class D, class VU>
-void sobol_pair(D d, VU key, uint32_t sample, uint32_t pair, hn::Vec<D>& u, hn::Vec<D>& v) {
-    const hn::RebindToUnsigned<D> du;
-    uint32_t reversed = 0;
-    for (int bit = 0; bit < 32; ++bit) reversed |= ((sample >> bit) & 1u) << (31 - bit);
-    sobol_pair_of(d, key, hn::Set(du, reversed), pair, u, v);
 }
 
 }  // namespace trp::HWY_NAMESPACE

@@ -1,4 +1,4 @@
-// The pixel of each lane of a block, and the key of its random sequence. Included once for each instruction set.
+// The pixel of each lane of a block, and its random sequence. Included once for each instruction set.
 #if defined(TRIPTYCH_PIXEL_RANDOM_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TRIPTYCH_PIXEL_RANDOM_INL
 #undef TRIPTYCH_PIXEL_RANDOM_INL
@@ -8,6 +8,7 @@
 
 #include "base/sobol-inl.h"
 #include "film/film.h"
+#include "film/pixel_random.h"
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -26,10 +27,25 @@ void pixel_of(D, uint32_t block_x, uint32_t block_y, int i, VU& x, VU& y) {
                 hn::Set(du, block_y * kBlockSide));
 }
 
+// The key of the pixels' sequence, and the index of their first numbers in it.
 template <class D, class VU>
-VU pixel_key(D, VU x, VU y, uint32_t seed) {
+VU sequence_key(D, VU x, VU y, const SampleSequence& sequence) {
     const hn::RebindToUnsigned<D> du;
-    return mix_bits(du, hn::Add(x, mix_bits(du, hn::Add(y, mix_bits(du, hn::Set(du, seed + 1u))))));
+    const VU square_x = hn::ShiftRight<7>(x), square_y = hn::ShiftRight<7>(y);
+    return mix_bits(du,
+                    hn::Add(square_x, mix_bits(du, hn::Add(square_y, mix_bits(du, hn::Set(du, sequence.seed + 1u))))));
+}
+
+template <class D, class VU>
+VU first_index(D, VU x, VU y, const SampleSequence& sequence) {
+    const hn::RebindToUnsigned<D> du;
+    const auto spread = [&](VU v) {  // of 7 bits, one to every other place
+        v = hn::And(v, hn::Set(du, 0x7Fu));
+        v = hn::And(hn::Or(v, hn::ShiftLeft<4>(v)), hn::Set(du, 0x0F0Fu));
+        v = hn::And(hn::Or(v, hn::ShiftLeft<2>(v)), hn::Set(du, 0x3333u));
+        return hn::And(hn::Or(v, hn::ShiftLeft<1>(v)), hn::Set(du, 0x5555u));
+    };
+    return hn::ShiftLeftSame(hn::Or(spread(x), hn::ShiftLeft<1>(spread(y))), static_cast<int>(sequence.bits));
 }
 
 }  // namespace trp::HWY_NAMESPACE

@@ -40,7 +40,7 @@ const SettingRow kSettings[] = {
      "", "0", 0, 10, nullptr, kRayMethods, "",
      [](Settings& s, const double* v) { s.adaptive.threshold = static_cast<float>(*v); }},
     {TRP_TYPE_INT, "adaptive.least_samples", "Least samples",
-     "Samples that every pixel gets before its noise is looked at; four times as many at edges of objects", "", "16", 8,
+     "Samples that every pixel gets before its noise is looked at; four times as many at edges of objects", "", "32", 8,
      65536, nullptr, kRayMethods, "",
      [](Settings& s, const double* v) { s.adaptive.least_samples = static_cast<uint32_t>(*v); }},
     {TRP_TYPE_INT, "seed", "Seed", "Another seed gives other noise", "", "0", 0, 2147483647, nullptr, kSurfaceMethods,

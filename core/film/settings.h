@@ -31,7 +31,7 @@ struct TraceLimits {
 // Pixels get fewer samples where that leaves no more noise than this.
 struct AdaptiveSampling {
     float threshold = 0;  // of a pixel's standard error over the square root of its radiance; 0: all get all
-    uint32_t least_samples = 16;
+    uint32_t least_samples = 32;
 };
 
 struct Settings {

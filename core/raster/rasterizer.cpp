@@ -76,6 +76,7 @@ struct Rasterizer {
     Projection projection;
     std::vector<SampleOffset> pattern;
     uint32_t light_samples = 1;  // of a pixel
+    SampleSequence sequence{0, 1};
     Illumination illumination;
     bool wants_shadow_pass;
     DrawList list;
@@ -125,6 +126,9 @@ Rasterizer::Rasterizer(const RenderJob& of, Evaluation where, const char* method
     if (std::any_of(snapshot.lights.begin(), snapshot.lights.end(),
                     [](const ReadyLight& light) { return light.is_sampled(); }))
         light_samples = of.settings.samples;
+    // Each edge sample takes as many light samples as another.
+    const auto edge_samples = static_cast<uint32_t>(pattern.size());
+    sequence = SampleSequence(of.settings.seed, (light_samples + edge_samples - 1) / edge_samples * edge_samples);
 }
 
 // Runs in the current arena.
@@ -149,9 +153,9 @@ void Rasterizer::illuminate(uint32_t block_x, uint32_t block_y, const LightShare
     for (uint32_t s = lights.first; s < lights.first + lights.count && !*job.cancelled; ++s)
         add_lights(
             snapshot, illumination, lights.coherence,
-            [&](uint32_t pair, float* u, float* v) { random_pair(block_x, block_y, job.settings.seed, s, pair, u, v); },
-            points, w.coefficients, {one ? w.radiance : w.lit, wants_shadow_pass ? &w.arriving : nullptr}, w.lights,
-            w.program, shadows);
+            [&](uint32_t pair, float* u, float* v) { random_pair(block_x, block_y, sequence, s, pair, u, v); }, points,
+            w.coefficients, {one ? w.radiance : w.lit, wants_shadow_pass ? &w.arriving : nullptr}, w.lights, w.program,
+            shadows);
     const float share = 1 / static_cast<float>(lights.count);
     for (int c = 0; c < 3 && !one; ++c)
         for (int i = 0; i < kBatch; ++i) w.radiance[c][i] += share * w.lit[c][i];

@@ -59,9 +59,7 @@ void Caster::shade(uint32_t block_x, uint32_t block_y, uint32_t sample, Coherenc
     ShadowCounts shadows;
     add_lights(
         snapshot, illumination, coherence,
-        [&](uint32_t pair, float* u, float* v) {
-            random_pair(block_x, block_y, job.settings.seed, sample, pair, u, v);
-        },
+        [&](uint32_t pair, float* u, float* v) { random_pair(block_x, block_y, maker.sequence, sample, pair, u, v); },
         w.points, w.coefficients,
         {w.radiance, wants_shadow_pass ? &w.arriving : nullptr, wants_parts ? &w.diffuse : nullptr}, w.lights,
         w.program, shadows);

@@ -53,7 +53,8 @@ void make_keys(const RayMaker& maker, uint32_t block_x, uint32_t block_y, BlockR
     for (int i = 0; i < kBatch; i += static_cast<int>(hn::Lanes(d))) {
         auto px = hn::Zero(du), py = hn::Zero(du);
         pixel_of(d, block_x, block_y, i, px, py);
-        hn::Store(pixel_key(d, px, py, maker.seed), du, rays.keys + i);
+        hn::Store(sequence_key(d, px, py, maker.sequence), du, rays.keys + i);
+        hn::Store(first_index(d, px, py, maker.sequence), du, rays.indices + i);
     }
 }
 
@@ -69,8 +70,9 @@ void make_rays(const RayMaker& maker, uint32_t block_x, uint32_t block_y, uint32
         auto px = hn::Zero(du), py = hn::Zero(du);
         pixel_of(d, block_x, block_y, i, px, py);
         const auto key = hn::Load(du, rays.keys + i);
+        const auto index = reverse_bits(du, hn::Add(hn::Load(du, rays.indices + i), hn::Set(du, sample)));
         V u = hn::Zero(d), v = hn::Zero(d);
-        sobol_pair(d, key, sample, 0, u, v);
+        sobol_pair(d, key, index, 0, u, v);
         const V film_x = hn::Add(hn::Add(hn::ConvertTo(d, hn::BitCast(di, px)), set(0.5f)),
                                  filter_offset(d, maker.filter.offsets(), u));
         const V film_y = hn::Add(hn::Add(hn::ConvertTo(d, hn::BitCast(di, py)), set(0.5f)),
@@ -84,7 +86,7 @@ void make_rays(const RayMaker& maker, uint32_t block_x, uint32_t block_y, uint32
             direction_x = direction_y = hn::Zero(d);
         }
         if (view.aperture_radius > 0) {
-            sobol_pair(d, key, sample, 1, u, v);
+            sobol_pair(d, key, index, 1, u, v);
             V lens_x = hn::Zero(d), lens_y = hn::Zero(d);
             aperture_point(d, view, u, v, lens_x, lens_y);
             lens_x = hn::Mul(lens_x, set(view.aperture_radius)), lens_y = hn::Mul(lens_y, set(view.aperture_radius));
@@ -98,7 +100,7 @@ void make_rays(const RayMaker& maker, uint32_t block_x, uint32_t block_y, uint32
         const int lane = i & 15;
         V time = hn::Zero(d);
         if (maker.moves) {
-            sobol_pair(d, key, sample, 2, u, v);
+            sobol_pair(d, key, index, 2, u, v);
             time = hn::MulAdd(u, set(maker.shutter[1] - maker.shutter[0]), set(maker.shutter[0]));
         }
         hn::Store(time, d, packet.ray.time + lane);
@@ -166,7 +168,7 @@ RayMaker make_ray_maker(const Snapshot& snapshot, const Settings& settings, cons
     const Camera& camera = *snapshot.camera;
     RayMaker maker{make_view(camera, snapshot.origin, width, height),
                    filter,
-                   settings.seed,
+                   SampleSequence(settings.seed, settings.samples),
                    std::max(0.125f, 1 / std::sqrt(static_cast<float>(settings.samples))),
                    snapshot.moves,
                    {camera.shutter[0], camera.shutter[1]},

@@ -1,6 +1,7 @@
 // Primary rays of a block and what they hit.
 #pragma once
 
+#include "film/pixel_random.h"
 #include "film/settings.h"
 #include "film/view.h"
 #include "geometry/embree.h"
@@ -15,14 +16,14 @@ inline constexpr int kPackets = kBatch / 16;  // packets of a block
 struct BlockRays {
     alignas(64) RTCRayHit16 packets[kPackets];
     LaneVec3 origin, direction;
-    alignas(64) uint32_t keys[kBatch];  // of the pixels' random sequences
+    alignas(64) uint32_t keys[kBatch], indices[kBatch];  // of the pixels' random sequences, and their first numbers
 };
 
 // What primary rays are made of, once for a render.
 struct RayMaker {
     View view;  // at the first time sample
     PixelFilter filter;
-    uint32_t seed = 0;
+    SampleSequence sequence;
     float footprint = 1;        // of a pixel: what one of many samples stands for
     bool moves = false;         // each ray has a time of its own
     float shutter[2] = {0, 0};  // when it opens and closes, within the time samples

@@ -109,7 +109,7 @@ uint32_t Tracer::primary(uint32_t block_x, uint32_t block_y, uint32_t sample, Tr
         shade(
             coherence,
             [&](uint32_t pair, float* u, float* v) {
-                random_pair(block_x, block_y, job.settings.seed, sample, pair, u, v);
+                random_pair(block_x, block_y, maker.sequence, sample, pair, u, v);
             },
             w);
         add_surfaces(
@@ -126,7 +126,7 @@ uint32_t Tracer::primary(uint32_t block_x, uint32_t block_y, uint32_t sample, Tr
             ray.direction = direction / length;
             ray.weight = w.throughput.get(i);
             ray.key = w.primary.keys[i];
-            ray.sample = sample;
+            ray.index = w.primary.indices[i] + sample;
             ray.medium = w.media_of[i];
             ray.time = w.points.time[i];
             ray.lane = static_cast<uint16_t>(i);
@@ -173,7 +173,7 @@ int Tracer::take_rays(TreeWorkspace& w) const {
         const PathRay& ray = w.rays[i < count ? i : 0];
         w.active[i] = i < count;
         w.keys[i] = ray.key;
-        w.samples[i] = ray.sample;
+        w.indices[i] = ray.index;
         w.media_of[i] = ray.medium;
         w.secondary.origin.set(i, ray.origin);
         w.secondary.direction.set(i, ray.direction);
@@ -284,7 +284,7 @@ void Tracer::secondary(TreeWorkspace& w) const {
         for (int i = 0; i < count; ++i) w.lamps_sampled[i] = w.rays[i].lamps_sampled;
         shade(
             Coherence::incoherent,
-            [&](uint32_t pair, float* u, float* v) { random_pair_of(w.keys, w.samples, pair, u, v); }, w);
+            [&](uint32_t pair, float* u, float* v) { random_pair_of(w.keys, w.indices, pair, u, v); }, w);
         for (int i = 0; i < count; ++i) {
             if (w.points.slot[i] == kNoSlot) continue;
             gain(w.rays[i], w.radiance.get(i) * w.coefficients.alpha[i], w);

@@ -24,7 +24,7 @@ inline constexpr int kWays = 3;
 struct PathRay {
     Vec3 origin{0, 0, 0}, direction{0, 0, 1};  // unit
     Vec3 weight{1, 1, 1};                      // of what it sees, in its pixel
-    uint32_t key = 0, sample = 0;              // of its random sequence
+    uint32_t key = 0, index = 0;               // of its random sequence, and its place there
     Media::State medium = Media::kOutside;
     int32_t node = 0;  // of the tree that is recorded
     uint16_t lane = 0;
@@ -54,7 +54,7 @@ struct TreeWorkspace {
     LaneVec3 throughput;
     SeenLights seen;
     uint8_t active[kBatch], missed[kBatch], lamps_sampled[kBatch];
-    alignas(64) uint32_t keys[kBatch], samples[kBatch];
+    alignas(64) uint32_t keys[kBatch], indices[kBatch];
     Media::State media_of[kBatch], beyond[kBatch];
     alignas(64) Lanes turn_u, turn_v, choice, survival;  // a path's random numbers at its surfaces
     float travelled[kBatch];                             // by primary rays that start in a solid

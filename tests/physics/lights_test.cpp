@@ -380,5 +380,44 @@ TEST(Lights, TheLeastLightBoundsWhatIsLost) {
     EXPECT_GT(lost, 1) << "some are left out";
 }
 
+// Errors of neighbours make up for each other: the mean of 8 x 8 pixels is better than of as many pixels whose errors
+// know nothing of each other, which would leave a 64th of a pixel's variance.
+TEST(Lights, NoiseIsFine) {
+    Scene scene;
+    scene.object(floor_square(20), scene.diffuse(0.7f, 0.7f, 0.7f));
+    scene.object(quad({-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}), scene.diffuse(0, 0, 0));
+    scene.light(TRP_LIGHT_AREA, {3, 3, 3}, look_at({1, 1, 4}, {0, 0, 0}),
+                [](TrpLightDesc& d) { d.size[0] = d.size[1] = 3; });
+    scene.camera(look_at({0, 0, 0.9f}, {0, 0, 0}, {0, 1, 0}), [](TrpCameraDesc& d) { d.field_of_view = 1.8f; });
+    scene.commit();
+    constexpr uint32_t kSide = 128, kBlock = 8;
+    for (const char* method : {"ray_casting", "ray_tracing", "path_tracing"})
+        for (const int samples : {1, 4, 16}) {
+            const auto picture = [&](int count, const char* seed) {
+                return Render(scene, kSide, kSide,
+                              {{"samples", std::to_string(count)}, {"film.filter_width", "0"}, {"seed", seed}}, {},
+                              method)
+                    .run()
+                    .read();
+            };
+            const Image noisy = picture(samples, "0"), right = picture(1024, "7");
+            double of_pixels = 0, of_blocks = 0;
+            for (uint32_t y = 0; y < kSide; y += kBlock)
+                for (uint32_t x = 0; x < kSide; x += kBlock) {
+                    double sum = 0;
+                    for (uint32_t k = 0; k < kBlock * kBlock; ++k) {
+                        const uint32_t px = x + k % kBlock, py = y + k / kBlock;
+                        const double error = noisy.at(px, py)[0] - right.at(px, py)[0];
+                        of_pixels += error * error;
+                        sum += error;
+                    }
+                    of_blocks += sum * sum;
+                }
+            ASSERT_GT(of_pixels, 0);
+            // Sums of independent errors would have the variance of all pixels together.
+            EXPECT_LT(of_blocks / of_pixels, 0.5) << method << ", " << samples << " samples";
+        }
+}
+
 }  // namespace
 }  // namespace trp_test

@@ -24,7 +24,7 @@ std::pair<float, float> one_pair(uint32_t key, uint32_t sample, uint32_t pair) {
     const hn::CappedTag<float, 1> d;
     const hn::RebindToUnsigned<decltype(d)> du;
     auto u = hn::Zero(d), v = hn::Zero(d);
-    sobol_pair(d, hn::Set(du, key), sample, pair, u, v);
+    sobol_pair(d, hn::Set(du, key), reverse_bits(du, hn::Set(du, sample)), pair, u, v);
     return {hn::GetLane(u), hn::GetLane(v)};
 }
 
