@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <string>
 
+#include "shading/equation.h"
+
 namespace trp {
 
 // The methods that see surfaces, for the tables of passes and settings; the others draw edges.
@@ -29,6 +31,9 @@ enum PassId : uint32_t {
     kReflectionPart,
     kTransmissionPart,
     kEnvironment,
+    // And by light groups, the first of kLightGroups.
+    kLightGroup1,
+    kLastLightGroup = kLightGroup1 + kLightGroups - 1,
     kRayCount,
     kTreeDepth,
     kPassCount

@@ -99,6 +99,8 @@ void add_parts(const SeenSurfaces& seen, int i, const BlockSums& sums) {
     const Vec3 emitted = seen.coefficients.emission.get(i), ambient = seen.coefficients.ambient.get(i) * seen.ambient;
     sums.add(kEmit, i, share * emitted);
     sums.add(kAmbientPart, i, share * ambient);
+    for (uint32_t group = 1; group <= kLightGroups && seen.groups; ++group)
+        add_to_group(group, i, share * seen.groups->of[group - 1].get(i), sums);
     if (!seen.diffuse) return;
     const Vec3 diffuse = seen.diffuse->get(i);
     sums.add(kDiffuseDirect, i, share * diffuse);
@@ -145,7 +147,8 @@ void add_background(const Snapshot& snapshot, const LaneVec3& directions, const 
     HWY_DYNAMIC_DISPATCH(add_background_lanes)(missed, throughput, shows ? &radiance : nullptr, transparent, sums);
 }
 
-void add_seen_light(int lane, const Vec3& throughput, const Vec3& radiance, const BlockSums& sums) {
+void add_seen_light(int lane, const Vec3& throughput, const Vec3& radiance, uint32_t group, const BlockSums& sums) {
+    add_to_group(group, lane, throughput * radiance, sums);
     sums.add(kCombined, lane, throughput * radiance);
     sums.add(kEmit, lane, throughput * radiance);
     sums.channel(kCombined, 3)[lane] += throughput.x;

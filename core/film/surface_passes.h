@@ -13,16 +13,25 @@ inline constexpr int kGreatestLayers = 64;    // of surfaces with holes in a row
 inline bool wants_light_parts(const PassList& passes) {
     return passes.has(kDiffuseDirect) || passes.has(kSpecularDirect);
 }
+inline bool wants_light_groups(const PassList& passes) {
+    return std::any_of(passes.order().begin(), passes.order().end(),
+                       [](PassId pass) { return pass >= kLightGroup1 && pass <= kLastLightGroup; });
+}
+// Adds a light's or a lane's radiance to the pass of its group; without effect where there is none.
+inline void add_to_group(uint32_t group, int lane, const Vec3& radiance, const BlockSums& sums) {
+    if (group >= 1 && group <= kLightGroups) sums.add(static_cast<PassId>(kLightGroup1 + group - 1), lane, radiance);
+}
 
 struct SeenSurfaces {
     const Snapshot& snapshot;
     const Points& points;
     const Coefficients& coefficients;
-    const LaneVec3& radiance;           // 0 where a lane sees nothing
-    const LaneVec3* throughput;         // of the surfaces before; null: there is none
-    const ArrivingLight* arriving;      // null: all light arrives, or the Shadow pass was not asked for
-    const LaneVec3* diffuse = nullptr;  // what lights add to radiance by K_D; null: not asked for
-    Vec3 ambient{0, 0, 0};              // I_A
+    const LaneVec3& radiance;            // 0 where a lane sees nothing
+    const LaneVec3* throughput;          // of the surfaces before; null: there is none
+    const ArrivingLight* arriving;       // null: all light arrives, or the Shadow pass was not asked for
+    const LaneVec3* diffuse = nullptr;   // what lights add to radiance by K_D; null: not asked for
+    Vec3 ambient{0, 0, 0};               // I_A
+    const GroupLight* groups = nullptr;  // what groups of lights add to radiance; null: not asked for
     bool straight = true;  // K_T lets what lies straight behind shine through; false: rays are traced for it
 };
 
@@ -38,8 +47,8 @@ Vec3 throughput_behind(const Points& points, const Coefficients& coefficients, i
 void add_background(const Snapshot& snapshot, const LaneVec3& directions, const uint8_t* missed,
                     const LaneVec3* throughput, bool transparent, const BlockSums& sums);
 
-// Adds a light that a lane sees.
-void add_seen_light(int lane, const Vec3& throughput, const Vec3& radiance, const BlockSums& sums);
+// Adds a light of a group that a lane sees.
+void add_seen_light(int lane, const Vec3& throughput, const Vec3& radiance, uint32_t group, const BlockSums& sums);
 
 // After the first sample: the depth of lanes that have seen no surface.
 void finish_depth(const uint8_t* first, const BlockSums& sums);

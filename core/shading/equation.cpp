@@ -25,8 +25,9 @@ void add_ambient_lanes(const Points& points, const Coefficients& coefficients, c
     }
 }
 
+// `group`: null, or what the light's group adds to the radiance.
 void add_light_lanes(Specular specular, const Points& points, const Coefficients& coefficients, const LaneVec3& weight,
-                     const LightSamples& samples, const LaneVec3& visibility, const LightSums& sums) {
+                     const LightSamples& samples, const LaneVec3& visibility, const LightSums& sums, LaneVec3* group) {
     LaneVec3& radiance = sums.radiance;
     ArrivingLight* const arriving = sums.arriving;
     const hn::ScalableTag<float> d;
@@ -47,6 +48,7 @@ void add_light_lanes(Specular specular, const Points& points, const Coefficients
             const V term = light_term(hn::Load(d, coefficients.diffuse[c] + i), n_dot_l, hn::Load(d, weight[c] + i),
                                       shine, hn::Mul(light, s));
             hn::Store(hn::Add(hn::Load(d, radiance[c] + i), term), d, radiance[c] + i);
+            if (group) hn::Store(hn::Add(hn::Load(d, (*group)[c] + i), term), d, (*group)[c] + i);
             if (sums.diffuse) {
                 const V part = hn::Mul(hn::Mul(hn::Load(d, coefficients.diffuse[c] + i), n_dot_l), hn::Mul(light, s));
                 hn::Store(hn::Add(hn::Load(d, (*sums.diffuse)[c] + i), part), d, (*sums.diffuse)[c] + i);
@@ -105,9 +107,11 @@ void add_ambient(const Points& points, const Coefficients& coefficients, const V
 }
 
 void add_light(Specular specular, const Points& points, const Coefficients& coefficients, const LaneVec3& weight,
-               const LightSamples& samples, const LaneVec3& visibility, const LightSums& sums) {
+               const LightSamples& samples, const LaneVec3& visibility, const LightSums& sums, uint32_t group) {
+    LaneVec3* const of_group =
+        sums.groups && group >= 1 && group <= kLightGroups ? &sums.groups->of[group - 1] : nullptr;
     HWY_DYNAMIC_DISPATCH(add_light_lanes)
-    (specular, points, coefficients, weight, samples, visibility, sums);
+    (specular, points, coefficients, weight, samples, visibility, sums, of_group);
 }
 
 void evaluate(const Snapshot& snapshot, Points& points, Coefficients& coefficients, ProgramScratch& scratch) {

@@ -37,16 +37,27 @@ struct ArrivingLight {
     }
 };
 
+inline constexpr uint32_t kLightGroups = 8;  // 1 to 8; 0 is none
+
+// What the lamps of each light group add to the radiance.
+struct GroupLight {
+    LaneVec3 of[kLightGroups];
+    void clear() {
+        for (LaneVec3& group : of) group.clear();
+    }
+};
+
 // What lights add to: lanes of radiance, and of what is asked for beside it (null: not).
 struct LightSums {
     LaneVec3& radiance;
     ArrivingLight* arriving = nullptr;
     LaneVec3* diffuse = nullptr;  // the part of K_D
+    GroupLight* groups = nullptr;
 };
 
 // radiance += (K_D (N·L) + K_S (V·R)^n) S_L I_L; `weight` is K_S, `visibility` S_L, a fraction where the way is partly
-// blocked, of each colour.
+// blocked, of each colour. `group`: the light's.
 void add_light(Specular specular, const Points& points, const Coefficients& coefficients, const LaneVec3& weight,
-               const LightSamples& samples, const LaneVec3& visibility, const LightSums& sums);
+               const LightSamples& samples, const LaneVec3& visibility, const LightSums& sums, uint32_t group);
 
 }  // namespace trp

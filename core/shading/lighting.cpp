@@ -32,7 +32,7 @@ void add_lights(const Snapshot& snapshot, const Illumination& illumination, Cohe
         // The highlight stands for lights that have a place; the world shows in mirrors.
         add_light(is_world ? Specular::none : illumination.specular, points, coefficients,
                   any_mirror && light.is_hit_by_rays() ? scratch.weight : coefficients.specular, scratch.samples,
-                  scratch.visibility, sums);
+                  scratch.visibility, sums, light.group);
     }
 }
 

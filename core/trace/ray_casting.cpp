@@ -20,6 +20,7 @@ struct Workspace {
     Points points;
     Coefficients coefficients;
     LaneVec3 radiance, diffuse;
+    GroupLight groups;
     ArrivingLight arriving;
     LaneVec3 throughput;
     SeenLights seen;
@@ -34,7 +35,7 @@ struct Caster {
     const RenderJob& job;
     const Snapshot& snapshot;
     RayMaker maker;
-    bool wants_shadow_pass, wants_parts, sees_lights;
+    bool wants_shadow_pass, wants_parts, wants_groups, sees_lights;
 
     void tile(const TileWork& work) const;
     void block(uint32_t block_x, uint32_t block_y, const TileWork& work, Workspace& w) const;
@@ -56,13 +57,15 @@ void Caster::shade(uint32_t block_x, uint32_t block_y, uint32_t sample, Coherenc
     add_ambient(w.points, w.coefficients, illumination.ambient, w.radiance);
     if (wants_shadow_pass) w.arriving.clear();
     if (wants_parts) w.diffuse.clear();
+    if (wants_groups) w.groups.clear();
     ShadowCounts shadows;
     add_lights(
         snapshot, illumination, coherence,
         [&](uint32_t pair, float* u, float* v) { random_pair(block_x, block_y, maker.sequence, sample, pair, u, v); },
         w.points, w.coefficients,
-        {w.radiance, wants_shadow_pass ? &w.arriving : nullptr, wants_parts ? &w.diffuse : nullptr}, w.lights,
-        w.program, shadows);
+        {w.radiance, wants_shadow_pass ? &w.arriving : nullptr, wants_parts ? &w.diffuse : nullptr,
+         wants_groups ? &w.groups : nullptr},
+        w.lights, w.program, shadows);
     job.counts->shadow_rays += shadows.rays;
     job.counts->shadow_time += shadows.nanoseconds;
     job.counts->shading_time += nanoseconds(start, Clock::now()) - shadows.nanoseconds;
@@ -73,7 +76,7 @@ void Caster::add_seen_lights(Workspace& w) const {
     if (!see_area_lights(snapshot.lights, true, w.rays, w.active, w.seen)) return;
     for (int i = 0; i < kBatch; ++i) {
         if (!(w.seen.t[i] > 0)) continue;
-        add_seen_light(i, w.throughput.get(i), w.seen.radiance.get(i), w.sums);
+        add_seen_light(i, w.throughput.get(i), w.seen.radiance.get(i), w.seen.group[i], w.sums);
         w.active[i] = 0;
         w.points.slot[i] = kNoSlot;
     }
@@ -108,7 +111,7 @@ uint32_t Caster::layers(uint32_t block_x, uint32_t block_y, uint32_t sample, Wor
         if (layer == 0 && job.settings.adaptive.threshold > 0) edges = packets_at_edges(w.points);
         add_surfaces({snapshot, w.points, w.coefficients, w.radiance, layer > 0 ? &w.throughput : nullptr,
                       wants_shadow_pass ? &w.arriving : nullptr, wants_parts ? &w.diffuse : nullptr,
-                      job.settings.illumination.ambient},
+                      job.settings.illumination.ambient, wants_groups ? &w.groups : nullptr},
                      sample == 0 ? first : nullptr, w.sums);
         if (!w.points.any_holes && !w.points.any_transmission) break;
 
@@ -156,6 +159,7 @@ bool ray_casting(RenderJob& job, const RenderEvents& events) {
                                        window.width, window.height),
                         job.film->passes().has(kShadow),
                         wants_light_parts(job.film->passes()),
+                        wants_light_groups(job.film->passes()),
                         std::any_of(job.snapshot->lights.begin(), job.snapshot->lights.end(),
                                     [](const ReadyLight& l) { return l.visible_camera; })};
     if (events.log)

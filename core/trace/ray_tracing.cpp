@@ -62,6 +62,7 @@ Tracer make_tracer(const RenderJob& job, const PixelFilter& filter, bool one_way
                   one_way,
                   job.film->passes().has(kShadow),
                   wants_light_parts(job.film->passes()),
+                  wants_light_groups(job.film->passes()),
                   any_light([](const ReadyLight& l) { return l.visible_camera; }),
                   any_light([](const ReadyLight& l) { return l.kind == ReadyLight::Kind::area; }),
                   0,

@@ -49,6 +49,8 @@ void see_light_lanes(const ReadyLight& light, const BlockRays& rays, SeenLights&
         hn::Store(hn::IfThenElse(met, t, nearest), d, seen.t + i);
         const Vector3<V> radiance = broadcast(d, light.emission) * share;
         store3(d, select3(met, radiance, load3(d, seen.radiance, i)), seen.radiance, i);
+        const hn::RebindToUnsigned<decltype(d)> du;
+        hn::BlendedStore(hn::Set(du, light.group), hn::RebindMask(du, met), du, seen.group + i);
     }
 }
 

@@ -7,8 +7,9 @@
 namespace trp {
 
 struct SeenLights {
-    alignas(64) Lanes t;  // the ray's parameter at the nearest one; 0: none is met
-    LaneVec3 radiance;    // seen there
+    alignas(64) Lanes t;                 // the ray's parameter at the nearest one; 0: none is met
+    LaneVec3 radiance;                   // seen there
+    alignas(64) uint32_t group[kBatch];  // the light's
 };
 
 // For lanes of rays that have been traced: the nearest of the area lights (of those that the camera sees, where

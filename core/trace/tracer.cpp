@@ -39,7 +39,7 @@ void Tracer::add_seen_lights(TreeWorkspace& w) const {
     for (int i = 0; i < kBatch; ++i) {
         if (!(w.seen.t[i] > 0)) continue;
         const Vec3 throughput = w.throughput.get(i), radiance = w.seen.radiance.get(i);
-        add_seen_light(i, throughput, radiance, w.sums);
+        add_seen_light(i, throughput, radiance, w.seen.group[i], w.sums);
         if (w.tree) {
             RayNode& root = w.tree->front();
             root.end = RayNode::End::light;
@@ -114,7 +114,7 @@ uint32_t Tracer::primary(uint32_t block_x, uint32_t block_y, uint32_t sample, Tr
             w);
         add_surfaces(
             {snapshot, w.points, w.coefficients, w.radiance, throughput, wants_shadow_pass ? &w.arriving : nullptr,
-             wants_parts ? &w.diffuse : nullptr, illumination.ambient, false},
+             wants_parts ? &w.diffuse : nullptr, illumination.ambient, wants_groups ? &w.groups : nullptr, false},
             sample == 0 ? first : nullptr, w.sums);
         const bool bounces = one_way || w.points.any_mirror || w.points.any_transmission;
         for (int i = 0; i < kBatch && (bounces || w.tree); ++i) {
@@ -212,6 +212,7 @@ Found Tracer::end_rays(int count, TreeWorkspace& w) const {
         if (!at_light) continue;
         const Vec3 radiance = w.seen.radiance.get(i);
         gain(ray, radiance, w);
+        add_to_group(w.seen.group[i], ray.lane, ray.weight * radiance, w.sums);
         w.points.slot[i] = kNoSlot;
         w.active[i] = 0;
         if (RayNode* const node = w.node_of(ray)) {
@@ -288,6 +289,9 @@ void Tracer::secondary(TreeWorkspace& w) const {
         for (int i = 0; i < count; ++i) {
             if (w.points.slot[i] == kNoSlot) continue;
             gain(w.rays[i], w.radiance.get(i) * w.coefficients.alpha[i], w);
+            for (uint32_t group = 1; group <= kLightGroups && wants_groups; ++group)
+                add_to_group(group, w.rays[i].lane,
+                             w.rays[i].weight * w.groups.of[group - 1].get(i) * w.coefficients.alpha[i], w.sums);
             if (w.tree) record_hit(w.rays[i], i, w.points.depth[i], w);
             pass_hole(i, w.rays[i], w);
             spawn(i, w.rays[i], w.points.depth[i], w);

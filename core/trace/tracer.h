@@ -48,6 +48,7 @@ struct TreeWorkspace {
     BlockRays primary, secondary;
     Points points;
     Coefficients coefficients;
+    GroupLight groups;
     LaneVec3 radiance, diffuse, background, steps[2];
     Bounces bounces;
     ArrivingLight arriving;
@@ -81,7 +82,7 @@ struct Tracer {
     RayMaker maker;
     Illumination illumination;
     bool one_way;  // paths, not trees
-    bool wants_shadow_pass, wants_parts, sees_lights, any_area_lights;
+    bool wants_shadow_pass, wants_parts, wants_groups, sees_lights, any_area_lights;
     float pixel_step;                                       // of a primary ray's footprint, at depth 1
     std::vector<std::pair<uint32_t, uint32_t>> around_eye;  // slots and materials of the solids that the eye is in
 

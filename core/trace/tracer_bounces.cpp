@@ -48,9 +48,11 @@ void Tracer::shade(Coherence coherence, const RandomPairs& random, TreeWorkspace
     if (wants_shadow_pass) w.arriving.clear();
     ShadowCounts shadows;
     if (wants_parts) w.diffuse.clear();
+    if (wants_groups) w.groups.clear();
     add_lights(snapshot, illumination, coherence, random, w.points, w.coefficients,
-               {w.radiance, wants_shadow_pass ? &w.arriving : nullptr, wants_parts ? &w.diffuse : nullptr}, w.lights,
-               w.program, shadows);
+               {w.radiance, wants_shadow_pass ? &w.arriving : nullptr, wants_parts ? &w.diffuse : nullptr,
+                wants_groups ? &w.groups : nullptr},
+               w.lights, w.program, shadows);
     job.counts->shadow_rays += shadows.rays;
     job.counts->shadow_time += shadows.nanoseconds;
     w.shadow_time = shadows.nanoseconds;

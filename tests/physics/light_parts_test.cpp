@@ -65,6 +65,56 @@ TEST(LightParts, AddUpToThePicture) {
     }
 }
 
+// What each light group gives is the picture of its lamps alone; all of them, with what no group gives, the picture.
+TEST(LightParts, GroupsArePicturesOfTheirLamps) {
+    const auto build = [](Scene& scene, uint32_t only) {
+        scene.object(floor_square(4), scene.material([](TrpMaterialDesc& d) {
+            d.diffuse = {{0.6f, 0.5f, 0.4f}, TRP_NO_NODE};
+            d.mirror = {{0.3f, 0.3f, 0.3f}, TRP_NO_NODE};
+            d.mirror_is_specular = 0;
+        }));
+        scene.object(sphere({-1, 0, 1}, 0.9f, 24), glass(scene, 1.5f));
+        const auto lamp = [&](uint32_t group, int32_t type, Vec at) {
+            const bool dark = only != 0 && only != group;
+            scene.light(type, dark ? Vec{1e-20f, 1e-20f, 1e-20f} : Vec{20, 15, 10}, look_at(at, {0, 0, 0.5f}),
+                        [&](TrpLightDesc& d) {
+                            d.group = group;
+                            d.radius = 0;
+                            d.visible_camera = type == TRP_LIGHT_AREA;
+                        });
+        };
+        lamp(1, TRP_LIGHT_POINT, {2, -3, 5});
+        lamp(2, TRP_LIGHT_AREA, {0.5f, 3, 1.5f});
+        lamp(2, TRP_LIGHT_POINT, {-2, -2, 3});
+        lamp(7, TRP_LIGHT_SUN, {-3, 1, 5});
+        scene.camera(look_at({0, -6, 2.5f}, {0, 0, 0.8f}));
+        scene.commit();
+    };
+    for (const char* method : {"ray_casting", "ray_tracing", "path_tracing"}) {
+        const Settings settings = {{"samples", "4"}, {"trace.least_weight", "0"}};
+        Scene scene;
+        build(scene, 0);
+        Render render(scene, 48, 32, settings, {"LightGroup1", "LightGroup2", "LightGroup3", "LightGroup7"}, method);
+        const Image picture = render.run().read();
+        std::vector<double> sum(size_t{48} * 32 * 3, 0);
+        for (const uint32_t group : {1u, 2u, 3u, 7u}) {
+            const Image part = render.read(("LightGroup" + std::to_string(group)).c_str());
+            for (size_t i = 0; i < sum.size(); ++i) sum[i] += part.values[i];
+            if (std::string(method) == "path_tracing") continue;  // whose paths go where there is light
+            Scene alone;
+            build(alone, group);
+            const Image its = Render(alone, 48, 32, settings, {}, method).run().read();
+            for (size_t i = 0; i < sum.size(); ++i)
+                ASSERT_NEAR(part.values[i], its.values[i / 3 * 4 + i % 3], 1e-4 * (1 + part.values[i]))
+                    << method << ", group " << group << ", " << i;
+        }
+        for (size_t i = 0; i < sum.size(); ++i) {
+            const double whole = picture.values[i / 3 * 4 + i % 3];
+            ASSERT_NEAR(sum[i], whole, 1e-4 * (1 + whole)) << method << " " << i;
+        }
+    }
+}
+
 // In a sealed cube of mirrors each pixel's tree has a ray to each level.
 TEST(LightParts, RaysAndDepthAreCounted) {
     Scene scene;
