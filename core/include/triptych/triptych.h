@@ -356,7 +356,7 @@ typedef struct TrpLightDesc {
     int32_t shape;                 /* area: TRP_SHAPE_… */
     int32_t cast_shadow;           /* default 1 */
     int32_t visible_camera;        /* area: seen by primary rays; default 0 */
-    uint32_t group;                /* light group, from 0 */
+    uint32_t group;                /* light group: 1 to 8 have a pass, LightGroup1 and so on; 0 is none */
 } TrpLightDesc;
 TRP_API TrpStatus trp_light_desc_init(TrpLightDesc* desc, size_t struct_size);
 TRP_API TrpStatus trp_light_add(TrpScene* scene, const TrpLightDesc* desc, uint32_t* id);
