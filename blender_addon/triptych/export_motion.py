@@ -41,13 +41,20 @@ class Motion:
         self.meshes = meshes
         self._transforms = {key: [] for key in places}
         self._positions = {id(mesh): [] for mesh in meshes.values()}
+        self._noted = set()  # meshes, which several objects may show
+
+    def begin_time(self):
+        """What is noted next is at another time."""
+        self._noted.clear()
 
     def note(self, key, matrix, mesh=None):
         """What is at the time that has been gone to: a matrix, and for what may bend a bpy.types.Mesh."""
         if key in self.places:
             self._transforms[key].append(rows(matrix))
-        if key in self.meshes and mesh is not None:
-            self._positions[id(self.meshes[key])].append(compat.mesh_positions(mesh))
+        number = id(self.meshes.get(key))
+        if key in self.meshes and number not in self._noted:
+            self._noted.add(number)
+            self._positions[number].append(compat.mesh_positions(mesh))
 
     def finish(self, steps, warn):
         """Gives items that were there at all times, and have moved, their motion."""
@@ -56,9 +63,7 @@ class Motion:
             if len(found) == steps and any((matrix != found[0]).any() for matrix in found):
                 setattr(item, name, np.stack(found))
         for mesh in {id(mesh): mesh for mesh in self.meshes.values()}.values():
-            # A mesh that several objects show is noted by each; its first notes of every time are alike.
             found = self._positions[id(mesh)]
-            found = found[:: max(len(found) // steps, 1)]
             if len(found) != steps or any(len(positions) != len(mesh.positions) for positions in found):
                 warn(f"mesh '{mesh.name}': its vertices are not the same while the shutter is open; it is not blurred")
             elif any((positions != found[0]).any() for positions in found):

@@ -44,6 +44,7 @@ class _Exporter:
         self.materials = {}
         self.places = {}  # as Motion takes them
         self.bending = {}
+        self.camera = None
         self.groups = {"": 0}
         for number, group in enumerate(getattr(depsgraph.view_layer, "lightgroups", ()), 1):
             self.groups[group.name] = number
@@ -81,11 +82,12 @@ class _Exporter:
         try:
             for time in shutter.times:
                 shutter.go_to(time)
+                motion.begin_time()
                 for key, instance, shown in self._shown():
                     motion.note(key, instance.matrix_world, shown.data if key in self.bending else None)
                 if self.scene.cameras:
-                    camera = self.depsgraph.scene.camera.evaluated_get(self.depsgraph)
-                    motion.note(_CAMERA, camera.matrix_world)
+                    # The frame's own: a marker may bind another one to a time within the shutter.
+                    motion.note(_CAMERA, self.camera.evaluated_get(self.depsgraph).matrix_world)
         finally:
             shutter.go_to(shutter.now)
         motion.finish(len(shutter.times), self.scene.warn)
@@ -105,6 +107,7 @@ class _Exporter:
             self.scene.warn(str(error))
             return
         self.scene.camera = 0
+        self.camera = camera.original
         self.places[_CAMERA] = self.scene.cameras[0], "world_from_camera"
 
     def _instance(self, key, instance, shown):

@@ -17,7 +17,7 @@ uint32_t noisy_packets(const BlockSums& sums, const BlockNoise& noise, uint32_t 
     const float r = static_cast<float>(rounds);
     uint32_t noisy = 0;
     for (int i = 0; i < kBatch; ++i)
-        for (int c = 0; c < 3; ++c) {
+        for (int c = 0; c < 4; ++c) {
             const float sum = rgba[c][i];
             const float variance = std::max(noise.squares[c][i] - sum * sum / r, 0.0f) / (r - 1);  // of a round's sum
             const float error = std::sqrt(variance / r) / kRound, mean = sum / (r * kRound);
@@ -50,10 +50,10 @@ void take_samples(const RenderJob& job, const TileWork& work, uint32_t block_x, 
     const BlockSums sums = film.block(block_x, block_y);
     const std::array<float*, 4> rgba = sums.combined();
     BlockNoise& noise = film.noise(block_x, block_y);
-    LaneVec3 before;
+    float before[4][kBatch];
     for (uint32_t first = work.first_sample; first < work.end_sample && noise.open; first += kRound) {
         const uint32_t end = std::min(first + kRound, work.end_sample);
-        for (int c = 0; c < 3; ++c) std::copy_n(rgba[c], kBatch, before[c]);
+        for (int c = 0; c < 4; ++c) std::copy_n(rgba[c], kBatch, before[c]);
         for (uint32_t s = first; s < end; ++s) {
             if (*job.cancelled) return;
             for (int i = 0; i < kBatch; ++i) active[i] = noise.open >> (i >> 4) & 1;
@@ -62,7 +62,7 @@ void take_samples(const RenderJob& job, const TileWork& work, uint32_t block_x, 
         }
         finish();
         if (end - first < kRound) return;
-        for (int c = 0; c < 3; ++c)
+        for (int c = 0; c < 4; ++c)
             for (int i = 0; i < kBatch; ++i) {
                 const float of_round = rgba[c][i] - before[c][i];
                 noise.squares[c][i] += of_round * of_round;

@@ -81,9 +81,9 @@ class BlockSums {
 
 // What is known of the noise in a block, for adaptive sampling.
 struct BlockNoise {
-    LaneVec3 squares{};      // of the sums of rounds, added up
-    uint32_t open = 0xFFFF;  // packets that need more samples, a bit to each
-    uint32_t edges = 0;      // packets that see an edge
+    float squares[4][kBatch] = {};  // of the sums of rounds, colour and alpha, added up
+    uint32_t open = 0xFFFF;         // packets that need more samples, a bit to each
+    uint32_t edges = 0;             // packets that see an edge
 };
 
 class Film {

@@ -44,7 +44,7 @@ struct Pass {
     const char* channels;
     const char* description;
     const char* methods;  // that give it, with a space between; "*": all
-    bool averaged;        // over the samples of a pixel; else the first sample's value
+    bool averaged;        // over the samples of a pixel; else as it is: the first sample's value, or a count
 };
 
 extern const Pass kPasses[kPassCount];

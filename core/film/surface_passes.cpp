@@ -116,10 +116,11 @@ void add_surfaces(const SeenSurfaces& seen, uint8_t* first, const BlockSums& sum
     if (sums.passes().order().size() == 1) return;
 
     for (int i = 0; i < kBatch; ++i) {
+        if (points.slot[i] == kNoSlot) continue;
+        add_parts(seen, i, sums);
         if (!(weights[i] > 0)) continue;
         sums.add(kNormal, i, points.normal.get(i) * weights[i]);
         sums.add(kAlbedo, i, seen.coefficients.diffuse.get(i) * weights[i]);
-        add_parts(seen, i, sums);
         Vec3 share(1, 1, 1);
         for (int c = 0; c < 3 && seen.arriving; ++c)
             if (seen.arriving->unblocked[c][i] > 0)

@@ -13,7 +13,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace trp::HWY_NAMESPACE {
 
-uint32_t reached_lanes(const ReadyLight& light, float reach, const Points& points) {
+uint32_t reached_lanes(const ReadyLight& light, float reach, bool by_shadow_rays, const Points& points) {
     const hn::CappedTag<float, 16> d;
     const hn::RebindToUnsigned<decltype(d)> du;
     using V = hn::Vec<decltype(d)>;
@@ -34,8 +34,12 @@ uint32_t reached_lanes(const ReadyLight& light, float reach, const Points& point
             // Rounding is not to hide what is just seen.
             const V margin = hn::MulAdd(distance, hn::Set(d, 1e-4f), extent);
             reached = hn::And(reached, hn::Le(hn::Sub(distance, extent), hn::Set(d, reach)));
-            for (const LaneVec3* normal : {&points.geometric_normal, &points.normal})
-                reached = hn::And(reached, hn::Gt(hn::Add(dot3(load3(d, *normal, i), to_light), margin), zero));
+            const auto is_before = [&](const LaneVec3& normal) {
+                return hn::Gt(hn::Add(dot3(load3(d, normal, i), to_light), margin), zero);
+            };
+            reached = hn::And(reached, is_before(points.normal));
+            // Without shadows the shading normal alone says what a light reaches.
+            if (by_shadow_rays) reached = hn::And(reached, is_before(points.geometric_normal));
             const V height = dot3(to_light, z);  // of the light's plane over the point; it looks along −z
             if (light.kind == ReadyLight::Kind::area) reached = hn::And(reached, hn::Ge(height, zero));
             if (cone) {
@@ -68,7 +72,8 @@ float ReadyLight::extent() const {
     return kind == Kind::area ? std::hypot(half_size[0], half_size[1]) : radius;
 }
 
-uint32_t reached_packets(const ReadyLight& light, int32_t falloff, float least, const Points& points) {
+uint32_t reached_packets(const ReadyLight& light, int32_t falloff, float least, bool by_shadow_rays,
+                         const Points& points) {
     float reach = std::numeric_limits<float>::infinity();
     if (least > 0) {
         // strength / d^k ≤ least
@@ -78,7 +83,7 @@ uint32_t reached_packets(const ReadyLight& light, int32_t falloff, float least, 
         if (kind == TRP_FALLOFF_LINEAR) reach = ratio;
         if (kind == TRP_FALLOFF_CONSTANT && ratio < 1) reach = 0;
     }
-    return HWY_DYNAMIC_DISPATCH(reached_lanes)(light, reach, points);
+    return HWY_DYNAMIC_DISPATCH(reached_lanes)(light, reach, by_shadow_rays, points);
 }
 
 }  // namespace trp

@@ -89,16 +89,15 @@ void sample_lanes(D d, const ReadyLight& light, int32_t falloff, const Points& p
                   LightSamples& samples) {
     const V zero = hn::Zero(d), one = hn::Set(d, 1.0f);
     const V time = hn::Load(d, points.time + i);
-    const auto at_that_time = [&](Vec3 LightFrame::*vector) {
-        return vector_at<D, V, LightFrame>(d, light, light.motion, vector, time);
-    };
-    const Vector3<V> z = at_that_time(&LightFrame::z);
+    const auto axis = [&](Vec3 LightFrame::*of) { return axis_at<D, V, LightFrame>(d, light, light.motion, of, time); };
+    const Vector3<V> position = vector_at<D, V, LightFrame>(d, light, light.motion, &LightFrame::position, time);
+    const Vector3<V> z = axis(&LightFrame::z);
     Vector3<V> direction;
     V distance = hn::Set(d, kFar), weight;  // I_L = emission · weight
     switch (light.kind) {
         case ReadyLight::Kind::point:
         case ReadyLight::Kind::spot: {
-            const Vector3<V> to_centre = at_that_time(&LightFrame::position) - load3(d, points.position, i);
+            const Vector3<V> to_centre = position - load3(d, points.position, i);
             const V centre_distance2 = dot3(to_centre, to_centre);
             const V centre_distance = hn::Sqrt(centre_distance2);
             const Vector3<V> axis = to_centre * safe_inverse(d, centre_distance);
@@ -142,7 +141,7 @@ void sample_lanes(D d, const ReadyLight& light, int32_t falloff, const Points& p
                 const V s = hn::Set(d, light.sin_half_angle);
                 x = hn::Mul(x, s), y = hn::Mul(y, s);
                 const V cosine = hn::Sqrt(hn::Max(hn::NegMulAdd(x, x, hn::NegMulAdd(y, y, one)), hn::Set(d, 1e-6f)));
-                direction = z * cosine + at_that_time(&LightFrame::x) * x + at_that_time(&LightFrame::y) * y;
+                direction = z * cosine + axis(&LightFrame::x) * x + axis(&LightFrame::y) * y;
                 weight = hn::Div(one, cosine);
             }
             break;
@@ -154,8 +153,8 @@ void sample_lanes(D d, const ReadyLight& light, int32_t falloff, const Points& p
             V x = hn::MulSub(hn::Set(d, 2.0f), u, one), y = hn::MulSub(hn::Set(d, 2.0f), v, one);
             if (light.ellipse) disk(d, u, v, x, y);
             x = hn::Mul(x, half_x), y = hn::Mul(y, half_y);
-            const Vector3<V> axis_x = at_that_time(&LightFrame::x), axis_y = at_that_time(&LightFrame::y);
-            const Vector3<V> to_centre = at_that_time(&LightFrame::position) - load3(d, points.position, i);
+            const Vector3<V> axis_x = axis(&LightFrame::x), axis_y = axis(&LightFrame::y);
+            const Vector3<V> to_centre = position - load3(d, points.position, i);
             auto wide = hn::Lt(one, zero);
             V solid_angle = zero;
             if (!light.ellipse) {
@@ -251,9 +250,10 @@ void sample_surface(const Snapshot& snapshot, const ReadyLight& light, const Poi
         emitters.time[i] = points.time[i];
         const PlacedSurface& surface = snapshot.surfaces[light.slot];
         const uint32_t* t = surface.vertices + 3 * static_cast<size_t>(emitters.triangle[i]);
-        const Vec3 at = surface.world_position(t[0], points.time[i]) * (1 - root) +
-                        surface.world_position(t[1], points.time[i]) * emitters.b1[i] +
-                        surface.world_position(t[2], points.time[i]) * emitters.b2[i];
+        const Vec3 p0 = surface.world_position(t[0], points.time[i]), p1 = surface.world_position(t[1], points.time[i]),
+                   p2 = surface.world_position(t[2], points.time[i]);
+        const float area = surface.moves() ? (p1 - p0).cross(p2 - p0).length() / 2 : light.areas[entry];
+        const Vec3 at = p0 * (1 - root) + p1 * emitters.b1[i] + p2 * emitters.b2[i];
         const Vec3 to_light = at - points.position.get(i);
         const float distance = to_light.length();
         if (!(distance > 0)) {
@@ -264,7 +264,7 @@ void sample_surface(const Snapshot& snapshot, const ReadyLight& light, const Poi
         samples.direction.set(i, to_light / distance);
         emitters.to_viewer.set(i, -(to_light / distance));
         // Area density over the light, for the weight below.
-        const float density = light.choice.probability(entry) / light.areas[entry];
+        const float density = light.choice.probability(entry) / std::max(area, 1e-37f);
         samples.light.x[i] = 1 / (kPi * std::max(density, 1e-37f) * distance * distance);
     }
     locate(snapshot, NormalChoice::mesh, emitters);

@@ -16,11 +16,13 @@ void add_lights(const Snapshot& snapshot, const Illumination& illumination, Cohe
     for (size_t l = 0; l < snapshot.lights.size(); ++l) {
         const ReadyLight& light = snapshot.lights[l];
         const bool is_world = light.kind == ReadyLight::Kind::world || light.kind == ReadyLight::Kind::world_map;
-        scratch.samples.packets = reached_packets(light, illumination.falloff, illumination.least_light, points);
+        const bool shadows = illumination.shadows && light.cast_shadow;
+        scratch.samples.packets =
+            reached_packets(light, illumination.falloff, illumination.least_light, shadows, points);
         if (scratch.samples.packets == 0) continue;
         if (light.is_sampled()) random(kFirstLightPair + static_cast<uint32_t>(l), scratch.u, scratch.v);
         sample_light(snapshot, light, illumination.falloff, points, scratch.u, scratch.v, scratch.samples, program);
-        if (illumination.shadows && light.cast_shadow) {
+        if (shadows) {
             const auto before = Clock::now();
             counts.rays +=
                 trace_shadows(snapshot, points, scratch.samples, is_world ? Coherence::incoherent : coherence,

@@ -77,8 +77,15 @@ ReadyLight make_surface_light(const Snapshot& snapshot, uint32_t slot) {
         const CompiledMaterial& material = snapshot.materials[surface.material(t)];
         if (!material.emits) continue;
         const uint32_t* v = surface.vertices + 3 * static_cast<size_t>(t);
-        const Vec3 p = surface.world_position(v[0]);
-        const float area = (surface.world_position(v[1]) - p).cross(surface.world_position(v[2]) - p).length() / 2;
+        // The mean over the time samples; what is sampled has the area of its time.
+        const size_t steps = std::max<size_t>(surface.position_steps, std::max<size_t>(surface.motion.size(), 1));
+        float area = 0;
+        for (size_t step = 0; step < steps; ++step) {
+            const float time = steps > 1 ? static_cast<float>(step) / static_cast<float>(steps - 1) : 0;
+            const Vec3 p = surface.world_position(v[0], time);
+            const Vec3 plane = (surface.world_position(v[1], time) - p).cross(surface.world_position(v[2], time) - p);
+            area += plane.length() / (2 * static_cast<float>(steps));
+        }
         if (!(area > 0)) continue;
         light.triangles.push_back(t);
         light.areas.push_back(area);

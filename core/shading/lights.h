@@ -79,8 +79,10 @@ using LightList = std::vector<ReadyLight>;
 LightList make_lights(const Snapshot& snapshot);
 
 // The packets of 16 lanes, a bit to each, that light can reach: not those that it lies behind, or that lie behind it,
-// outside its cone, or so far away that less than `least` of I_L would arrive. `falloff` as below.
-uint32_t reached_packets(const ReadyLight& light, int32_t falloff, float least, const Points& points);
+// outside its cone, or so far away that less than `least` of I_L would arrive. `falloff` as below; `by_shadow_rays`:
+// whether such will be traced.
+uint32_t reached_packets(const ReadyLight& light, int32_t falloff, float least, bool by_shadow_rays,
+                         const Points& points);
 
 // Light samples of one light for the lanes of samples.packets, by u and v in [0, 1) (unused where the light is not
 // sampled). `falloff` overrides the light's own where it is not negative.

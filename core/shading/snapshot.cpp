@@ -144,6 +144,24 @@ Bounds world_bounds(const Surface& surface, const Affine& world_from_object) {
     return bounds;
 }
 
+// And over all time samples.
+Bounds bounds_over_time(const Surface& surface, const std::vector<Affine>& world_from_object) {
+    const Mesh& mesh = surface.mesh();
+    Bounds bounds;
+    if (mesh.time_count == 1) {
+        for (const Affine& m : world_from_object) {
+            const Bounds at = world_bounds(surface, m);
+            bounds.extend(at.min);
+            bounds.extend(at.max);
+        }
+        return bounds;
+    }
+    for (const Affine& m : world_from_object)
+        for (size_t v = 0; v < size_t{mesh.time_count} * mesh.vertex_count; ++v)
+            bounds.extend(m.point(mesh.positions[v]));
+    return bounds;
+}
+
 // Whether rays can meet what fills these bounds: not a point, and within the numbers that rays can have.
 bool has_extent(const Bounds& bounds) {
     constexpr float kFarthest = 1e18f;
@@ -280,8 +298,7 @@ std::shared_ptr<const Snapshot> make_snapshot(const Scene& scene, std::shared_pt
                                                                     : holes                   ? kFiltersShadow
                                                                     : transmits               ? kTransmitsShadow
                                                                                               : kCastsShadow);
-        if (std::any_of(p.world_from_object.begin(), p.world_from_object.end(),
-                        [&](const Affine& m) { return !has_extent(world_bounds(*surface, m)); })) {
+        if (!has_extent(bounds_over_time(*surface, p.world_from_object))) {
             warn(*snapshot, TRP_WARNING_MESH, id,
                  fmt::format("{} has no extent where it stands and was left out",
                              item_name("instance", id, instance->name)));

@@ -46,6 +46,7 @@ struct PlacedSurface {
         return baked ? positions[vertex] : world_from_object.point(positions[vertex]);
     }
     Vec3 world_position(uint32_t vertex, float time) const;
+    bool moves() const { return position_steps > 1 || motion.size() > 1; }
 };
 
 enum MaterialFlag : uint8_t {

@@ -50,6 +50,15 @@ V step_weight(D d, V time, size_t step, size_t steps) {
     return hn::Max(hn::Sub(hn::Set(d, 1.0f), away), hn::Zero(d));
 }
 
+// Unit length; where there is next to none left, what it was `before` it moved.
+template <class D, class V>
+Vector3<V> unit_or(D d, const Vector3<V>& v, const Vec3& before) {
+    const V squared = dot3(v, v);
+    const auto lost = hn::Lt(squared, hn::Set(d, 1e-6f));
+    const V inverse = hn::Div(hn::Set(d, 1.0f), hn::Sqrt(hn::Max(squared, hn::Set(d, 1e-6f))));
+    return select3(lost, broadcast(d, before), v * inverse);
+}
+
 // A vector of a frame that moves, at the lanes' times; `motion`: the frame at each time sample, or empty where it
 // stands still as `first` has it.
 template <class D, class V, class Frame>
@@ -59,6 +68,13 @@ Vector3<V> vector_at(D d, const Frame& first, const std::vector<Frame>& motion, 
     for (size_t step = 0; step < motion.size(); ++step)
         out = add_scaled(out, broadcast(d, motion[step].*vector), step_weight(d, time, step, motion.size()));
     return out;
+}
+
+// An axis of a frame that moves, as vector_at().
+template <class D, class V, class Frame>
+Vector3<V> axis_at(D d, const Frame& first, const std::vector<Frame>& motion, Vec3 Frame::*axis, V time) {
+    const Vector3<V> v = vector_at(d, first, motion, axis, time);
+    return motion.empty() ? v : unit_or(d, v, first.*axis);
 }
 
 }  // namespace trp::HWY_NAMESPACE

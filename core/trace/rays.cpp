@@ -104,10 +104,14 @@ void make_rays(const RayMaker& maker, uint32_t block_x, uint32_t block_y, uint32
             time = hn::MulAdd(u, set(maker.shutter[1] - maker.shutter[0]), set(maker.shutter[0]));
         }
         hn::Store(time, d, packet.ray.time + lane);
-        const Vector3<V> x = vector_at(d, view, maker.motion, &View::x, time),
-                         y = vector_at(d, view, maker.motion, &View::y, time),
-                         z = vector_at(d, view, maker.motion, &View::z, time),
+        const Vector3<V> z = axis_at(d, view, maker.motion, &View::z, time),
                          position = vector_at(d, view, maker.motion, &View::position, time);
+        Vector3<V> x = vector_at(d, view, maker.motion, &View::x, time),
+                   y = vector_at(d, view, maker.motion, &View::y, time);
+        if (!maker.motion.empty()) {
+            x = unit_or(d, add_scaled(x, z, hn::Neg(dot3(x, z))), view.x);
+            y = cross3(z, x);
+        }
         const Vector3<V> origins3 = add_scaled(add_scaled(position, y, origin_y), x, origin_x),
                          directions3 = add_scaled(y * direction_y - z, x, direction_x);
         const V* const of_origin[3] = {&origins3.x, &origins3.y, &origins3.z};

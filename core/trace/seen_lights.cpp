@@ -19,14 +19,15 @@ void see_light_lanes(const ReadyLight& light, const BlockRays& rays, SeenLights&
         const RTCRay16& ray = rays.packets[i >> 4].ray;
         const int k = i & 15;
         const V time = hn::Load(d, ray.time + k);
-        const auto at_that_time = [&](Vec3 LightFrame::*vector) {
-            return vector_at<decltype(d), V, LightFrame>(d, light, light.motion, vector, time);
+        const auto axis = [&](Vec3 LightFrame::*of) {
+            return axis_at<decltype(d), V, LightFrame>(d, light, light.motion, of, time);
         };
-        const Vector3<V> axis_x = at_that_time(&LightFrame::x), axis_y = at_that_time(&LightFrame::y),
-                         axis_z = at_that_time(&LightFrame::z);
+        const Vector3<V> position =
+            vector_at<decltype(d), V, LightFrame>(d, light, light.motion, &LightFrame::position, time);
+        const Vector3<V> axis_x = axis(&LightFrame::x), axis_y = axis(&LightFrame::y), axis_z = axis(&LightFrame::z);
         const Vector3<V> direction = load3(d, rays.direction, i);
         const V slope = dot3(direction, axis_z);  // it shines to −z
-        const Vector3<V> to_centre = at_that_time(&LightFrame::position) - load3(d, rays.origin, i);
+        const Vector3<V> to_centre = position - load3(d, rays.origin, i);
         const V t = hn::Div(dot3(to_centre, axis_z), hn::Max(slope, tiny));
         const V nearest = hn::Load(d, seen.t + i);
         const V end = hn::IfThenElse(hn::Gt(nearest, zero), nearest, hn::Load(d, ray.tfar + k));

@@ -112,6 +112,7 @@ uint32_t Tracer::primary(uint32_t block_x, uint32_t block_y, uint32_t sample, Tr
                 random_pair(block_x, block_y, maker.sequence, sample, pair, u, v);
             },
             w);
+        if (layer == 0 && job.settings.adaptive.threshold > 0) edges = packets_at_edges(w.points);
         add_surfaces(
             {snapshot, w.points, w.coefficients, w.radiance, throughput, wants_shadow_pass ? &w.arriving : nullptr,
              wants_parts ? &w.diffuse : nullptr, illumination.ambient, wants_groups ? &w.groups : nullptr, false},

@@ -6,7 +6,8 @@
 // rays end.
 //
 // A path is a tree of which only one branch is followed at each surface, chosen at random by what it would count for,
-// and to which diffuse and glossy reflection have been added.
+// and to which diffuse and glossy reflection have been added. Through a hole that is not clear both go on: the
+// surface's branch and the ray itself.
 #pragma once
 
 #include "film/surface_passes.h"

@@ -17,6 +17,7 @@ namespace trp {
 namespace {
 
 constexpr uint32_t kTurnPair = 3, kChoicePair = 4;  // of random numbers
+constexpr float kGreatestWeight = 1e18f;            // of surfaces that give more light than they get
 constexpr uint32_t kSureWays = 3;                   // a path is as long as this, unless it counts for nothing
 constexpr float kPi = std::numbers::pi_v<float>;
 
@@ -84,6 +85,7 @@ void Tracer::roughen(TreeWorkspace& w) const {
 void Tracer::cross_surfaces(TreeWorkspace& w) const {
     if (!w.points.any_mirror && !w.points.any_transmission) {
         std::copy_n(w.media_of, kBatch, w.beyond);
+        std::fill_n(w.crosses, kBatch, uint8_t{0});
         return;
     }
     for (int i = 0; i < kBatch; ++i) {
@@ -120,6 +122,7 @@ void Tracer::push(const PathRay& parent, int i, Way way, const Vec3& direction, 
     const TraceLimits& limits = job.settings.trace;
     PathRay ray = parent;
     ray.weight = parent.weight * weight;
+    if (!(greatest(ray.weight) <= kGreatestWeight)) return;
     ++ray.ways[k];
     if (parent.depth() == 0) ray.part = kParts[k];
     const bool too_deep = ray.depth() > limits.depth || ray.ways[k] > limits.ways[k];

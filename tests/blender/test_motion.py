@@ -81,3 +81,15 @@ def test_a_mesh_that_changes_its_vertices(scene, blurred):
     drive(array, "count", "5 if frame > 10.2 else 1")
     scene.frame_set(10)
     assert row(scene).max() == pytest.approx(1, abs=1e-3)
+
+
+def test_a_camera_that_is_cut(scene, blurred):
+    """A marker that binds another camera to a time within the shutter moves none."""
+    other = stage.camera(scene, (50, 0, 5), type="ORTHO", ortho_scale=6)
+    here = next(thing for thing in scene.objects if thing.type == "CAMERA" and thing != other)
+    drive(blurred, "location", "2 * (frame - 10)", 0)
+    for frame, camera in ((9, other), (10, here)):
+        scene.timeline_markers.new(f"Cut {frame}", frame=frame).camera = camera
+    scene.frame_set(10)
+    assert scene.camera == here
+    assert row(scene) == pytest.approx(expected(), abs=8e-3)

@@ -32,6 +32,14 @@ TEST(LightParts, AddUpToThePicture) {
         d.specular = {{0.7f, 0.6f, 0.5f}, TRP_NO_NODE};
         d.alpha = {{0.75f, 0, 0}, TRP_NO_NODE};
     }));
+    // All that is behind it is seen too.
+    scene.object(quad({-2, -2, 0.5f}, {-1, -2, 0.5f}, {-1, -2, 1.5f}, {-2, -2, 1.5f}),
+                 scene.material([](TrpMaterialDesc& d) {
+                     d.diffuse = {{0.1f, 0.1f, 0.1f}, TRP_NO_NODE};
+                     d.transmission = {{1, 1, 1}, TRP_NO_NODE};
+                     d.emission = {{0.3f, 0.2f, 0.1f}, TRP_NO_NODE};
+                     d.thin = 1;
+                 }));
     scene.light(TRP_LIGHT_POINT, {60, 60, 60}, translation({2, -3, 5}));
     scene.light(TRP_LIGHT_AREA, {4, 4, 4}, look_at({0, 3, 1}, {0, -6, 1.5f}),
                 [](TrpLightDesc& d) { d.visible_camera = 1; });

@@ -419,5 +419,35 @@ TEST(Lights, NoiseIsFine) {
         }
 }
 
+// On a coarse smooth ball there is light where N·L > 0, though the faces there look away from it.
+TEST(Lights, ReachWhereShadingNormalsSaySo) {
+    Scene scene;
+    scene.object(sphere({0, 0, 0}, 1, 4), scene.diffuse(1, 1, 1));
+    const Vec lamp = {4, -2, 1};
+    scene.light(TRP_LIGHT_POINT, {30, 30, 30}, translation(lamp), [](TrpLightDesc& d) { d.radius = 0; });
+    scene.camera(look_at({0, -5, 0}, {0, 0, 0}));
+    scene.commit();
+    for (const char* method : {"ray_casting", "phong"}) {
+        Render render(scene, 96, 96,
+                      {{"samples", "1"},
+                       {"raster.samples", "1"},
+                       {"film.filter_width", "0"},
+                       {"shadows", "off"},
+                       {"shading.specular", "none"}},
+                      {"Position", "Normal", "Depth"}, method);
+        const Image image = render.run().read(), positions = render.read("Position"), normals = render.read("Normal"),
+                    depth = render.read("Depth");
+        for (uint32_t y = 0; y < 96; ++y)
+            for (uint32_t x = 0; x < 96; ++x) {
+                if (*depth.at(x, y) > 1e9f) continue;
+                const float *const p = positions.at(x, y), *const n = normals.at(x, y);
+                const Vec to = lamp - Vec{p[0], p[1], p[2]};
+                const double cosine = std::max(dot(Vec{n[0], n[1], n[2]}, unit(to)), 0.0f);
+                ASSERT_NEAR(image.at(x, y)[0], cosine * 30 / kPi / dot(to, to), 1e-4)
+                    << method << " " << x << ", " << y;
+            }
+    }
+}
+
 }  // namespace
 }  // namespace trp_test

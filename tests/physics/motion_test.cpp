@@ -177,6 +177,84 @@ TEST(Motion, IsTheMeanOverTime) {
     }
 }
 
+// Half way through a wide turn, a spot has its cone, a sun its strength and a camera its field of view.
+TEST(Motion, TurnsKeepTheirSize) {
+    const auto picture = [](float angle, bool turns, int what) {
+        Scene scene;
+        scene.object(floor_square(4), scene.diffuse(0.8f, 0.8f, 0.8f));
+        scene.object(box({-0.5f, -0.3f, 0}, {0.7f, 0.6f, 0.4f}), scene.diffuse(0.3f, 0.5f, 0.8f));
+        const auto at = [&](float share, Vec from) {  // turned about the axis through `from`, y upwards
+            const float a = (share - 0.5f) * angle, c = std::cos(a), s = std::sin(a);
+            return Transform{c, -s, 0, from[0], s, c, 0, from[1], 0, 0, 1, from[2]};
+        };
+        const auto tilted = [&](float share, Vec from) {  // turned about x
+            const float a = (share - 0.5f) * angle, c = std::cos(a), s = std::sin(a);
+            return Transform{1, 0, 0, from[0], 0, c, -s, from[1], 0, s, c, from[2]};
+        };
+        const bool lamp_turns = turns && what < 2, camera_turns = turns && what == 2;
+        const std::vector<float> lamp =
+            lamp_turns ? steps({tilted(0, {0, 0, 5}), tilted(1, {0, 0, 5})}) : steps({tilted(0.5f, {0, 0, 5})});
+        scene.light(what == 1 ? TRP_LIGHT_SUN : TRP_LIGHT_SPOT, {20, 20, 20}, kIdentity, [&](TrpLightDesc& d) {
+            d.world_from_light = lamp.data();
+            d.time_count = lamp_turns ? 2 : 1;
+            d.radius = 0;
+            if (what != 1) d.angle = 0.7f;
+            if (what == 1) d.angle = 0;
+        });
+        const std::vector<float> eye =
+            camera_turns ? steps({at(0, {0, 0, 6}), at(1, {0, 0, 6})}) : steps({at(0.5f, {0, 0, 6})});
+        scene.camera(kIdentity, [&](TrpCameraDesc& d) {
+            d.world_from_camera = eye.data();
+            d.time_count = camera_turns ? 2 : 1;
+            d.shutter[0] = d.shutter[1] = 0.5f;
+        });
+        return blurred(scene, "ray_casting", {{"samples", "16"}}, 40, 40);
+    };
+    for (const int what : {0, 1, 2}) {
+        const Image moved = picture(1.5f, true, what), still = picture(1.5f, false, what);
+        size_t differ = 0;
+        for (size_t i = 0; i < still.values.size(); ++i) differ += std::abs(moved.values[i] - still.values[i]) > 1e-3;
+        EXPECT_LE(differ, 40u) << what << ": at edges, to rounding";
+        EXPECT_GT(mean(still), 0.01);
+    }
+}
+
+// A body that glows and grows gives as much light as its mean over time.
+TEST(Motion, EmittersThatGrow) {
+    const auto lit = [](float open, float close) {
+        Scene scene;
+        MeshData square = quad({-0.1f, -0.1f, 0}, {-0.1f, 0.1f, 0}, {0.1f, 0.1f, 0}, {0.1f, -0.1f, 0});
+        square.materials = {glowing(scene, 50)};
+        Transform large = translation({0, 0, 3});
+        large[0] = large[5] = large[10] = 4;
+        moving(scene, scene.mesh(square), {translation({0, 0, 3}), large});
+        scene.object(floor_square(2), scene.diffuse(0.8f, 0.8f, 0.8f));
+        scene.camera(look_at({0, 0, 2}, {0, 0, 0}, {0, 1, 0}), [&](TrpCameraDesc& d) {
+            d.shutter[0] = open, d.shutter[1] = close;
+            d.field_of_view = 0.3f;
+        });
+        return mean(blurred(scene, "ray_casting", {{"samples", "64"}}, 16, 16));
+    };
+    double expected = 0;
+    for (int k = 0; k < 16; ++k) {
+        const float time = (static_cast<float>(k) + 0.5f) / 16;
+        expected += lit(time, time) / 16;
+    }
+    EXPECT_NEAR(lit(0, 1) / expected, 1, 0.02);
+}
+
+// What grows from a point is there.
+TEST(Motion, WhatGrowsFromNothing) {
+    Scene scene;
+    MeshData square = floor_square(1);
+    square.materials = {glowing(scene, 1)};
+    Transform nothing = kIdentity;
+    nothing[0] = nothing[5] = nothing[10] = 0;
+    moving(scene, scene.mesh(square), {nothing, kIdentity});
+    scene.camera_above(3);
+    EXPECT_GT(mean(blurred(scene, "ray_casting")), 0.05);
+}
+
 // A shutter that opens for no time sees the mesh where it is then, to rounding: as one that stands there.
 TEST(Motion, AClosedShutterSeesOneTime) {
     const auto picture = [](bool moves) {
