@@ -3,8 +3,8 @@
 
 Quads, linear Rec. 709 reflectances, the light's radiance and the camera are Mitsuba's numbers; they differ from the
 measured box (cornell_box.py). The light hangs 0.01 below the ceiling and emits downwards; a black back keeps light from
-going up through it, as Mitsuba's surfaces are black from behind where Triptych's one-sided ones are not there. 256 × 256
-pixels.
+going up through it, as Mitsuba's surfaces are black from behind where Triptych's one-sided ones are not there.
+256 × 256 pixels.
 """
 
 import math
