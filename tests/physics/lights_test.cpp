@@ -391,16 +391,16 @@ TEST(Lights, NoiseIsFine) {
     scene.camera(look_at({0, 0, 0.9f}, {0, 0, 0}, {0, 1, 0}), [](TrpCameraDesc& d) { d.field_of_view = 1.8f; });
     scene.commit();
     constexpr uint32_t kSide = 128, kBlock = 8;
+    const auto picture = [&](const char* method, int samples, const char* seed) {
+        return Render(scene, kSide, kSide,
+                      {{"samples", std::to_string(samples)}, {"film.filter_width", "0"}, {"seed", seed}}, {}, method)
+            .run()
+            .read();
+    };
+    const Image right = picture("ray_casting", 512, "7");
     for (const char* method : {"ray_casting", "ray_tracing", "path_tracing"})
         for (const int samples : {1, 4, 16}) {
-            const auto picture = [&](int count, const char* seed) {
-                return Render(scene, kSide, kSide,
-                              {{"samples", std::to_string(count)}, {"film.filter_width", "0"}, {"seed", seed}}, {},
-                              method)
-                    .run()
-                    .read();
-            };
-            const Image noisy = picture(samples, "0"), right = picture(1024, "7");
+            const Image noisy = picture(method, samples, "0");
             double of_pixels = 0, of_blocks = 0;
             for (uint32_t y = 0; y < kSide; y += kBlock)
                 for (uint32_t x = 0; x < kSide; x += kBlock) {
