@@ -30,7 +30,7 @@ void add_radiance_lanes(const SeenSurfaces& seen, const BlockSums& sums, float* 
         if (seen.throughput || transmits) weight = hn::Zero(d);
         for (int c = 0; c < 3; ++c) {
             const V share = seen.throughput ? hn::Mul(alpha, hn::Load(d, (*seen.throughput)[c] + i)) : alpha;
-            const V radiance = hn::IfThenElseZero(hn::Gt(share, hn::Zero(d)), hn::Load(d, seen.radiance[c] + i));
+            const V radiance = hn::IfThenElseZero(hn::Gt(share, hn::Zero(d)), hn::Load(d, seen.light.radiance[c] + i));
             hn::Store(hn::MulAdd(share, radiance, hn::Load(d, rgba[c] + i)), d, rgba[c] + i);
             if (transmits) {
                 const V ends = hn::Mul(share, hn::Sub(one, hn::Load(d, seen.coefficients.transmission[c] + i)));
@@ -99,15 +99,31 @@ void add_parts(const SeenSurfaces& seen, int i, const BlockSums& sums) {
     const Vec3 emitted = seen.coefficients.emission.get(i), ambient = seen.coefficients.ambient.get(i) * seen.ambient;
     sums.add(kEmit, i, share * emitted);
     sums.add(kAmbientPart, i, share * ambient);
-    for (uint32_t group = 1; group <= kLightGroups && seen.groups; ++group)
-        add_to_group(group, i, share * seen.groups->of[group - 1].get(i), sums);
-    if (!seen.diffuse) return;
-    const Vec3 diffuse = seen.diffuse->get(i);
+    for (uint32_t group = 1; group <= kLightGroups && seen.light.groups; ++group)
+        add_to_group(group, i, share * seen.light.groups->of[group - 1].get(i), sums);
+    if (!seen.light.diffuse) return;
+    const Vec3 diffuse = seen.light.diffuse->get(i);
     sums.add(kDiffuseDirect, i, share * diffuse);
-    sums.add(kSpecularDirect, i, share * (seen.radiance.get(i) - emitted - ambient - diffuse));
+    sums.add(kSpecularDirect, i, share * (seen.light.radiance.get(i) - emitted - ambient - diffuse));
+}
+
+bool wants_groups(const PassList& passes) {
+    return std::any_of(passes.order().begin(), passes.order().end(),
+                       [](PassId pass) { return pass >= kLightGroup1 && pass <= kLastLightGroup; });
 }
 
 }  // namespace
+
+LightLanes::LightLanes(const PassList& passes)
+    : sums{radiance, passes.has(kShadow) ? &arriving_ : nullptr,
+           passes.has(kDiffuseDirect) || passes.has(kSpecularDirect) ? &diffuse_ : nullptr,
+           wants_groups(passes) ? &groups_ : nullptr} {}
+
+void LightLanes::clear() {
+    if (sums.arriving) sums.arriving->clear();
+    if (sums.diffuse) sums.diffuse->clear();
+    if (sums.groups) sums.groups->clear();
+}
 
 void add_surfaces(const SeenSurfaces& seen, uint8_t* first, const BlockSums& sums) {
     const Points& points = seen.points;
@@ -122,9 +138,9 @@ void add_surfaces(const SeenSurfaces& seen, uint8_t* first, const BlockSums& sum
         sums.add(kNormal, i, points.normal.get(i) * weights[i]);
         sums.add(kAlbedo, i, seen.coefficients.diffuse.get(i) * weights[i]);
         Vec3 share(1, 1, 1);
-        for (int c = 0; c < 3 && seen.arriving; ++c)
-            if (seen.arriving->unblocked[c][i] > 0)
-                share[c] = seen.arriving->blocked[c][i] / seen.arriving->unblocked[c][i];
+        const ArrivingLight* const arriving = seen.light.arriving;
+        for (int c = 0; c < 3 && arriving; ++c)
+            if (arriving->unblocked[c][i] > 0) share[c] = arriving->blocked[c][i] / arriving->unblocked[c][i];
         sums.add(kShadow, i, share * weights[i]);
         if (!first || first[i]) continue;
         first[i] = 1;

@@ -9,14 +9,24 @@ namespace trp {
 inline constexpr float kNothingSeen = 1e10f;  // depth, as Blender has it
 inline constexpr int kGreatestLayers = 64;    // of surfaces with holes in a row, one behind the other
 
-// Whether passes are asked for that part the light of lights.
-inline bool wants_light_parts(const PassList& passes) {
-    return passes.has(kDiffuseDirect) || passes.has(kSpecularDirect);
-}
-inline bool wants_light_groups(const PassList& passes) {
-    return std::any_of(passes.order().begin(), passes.order().end(),
-                       [](PassId pass) { return pass >= kLightGroup1 && pass <= kLastLightGroup; });
-}
+// The lanes that lights add to: radiance, and what the passes that are asked for need beside it.
+class LightLanes {
+  public:
+    explicit LightLanes(const PassList& passes);
+    LightLanes(const LightLanes&) = delete;
+    LightLanes& operator=(const LightLanes&) = delete;
+
+    LaneVec3 radiance;
+    const LightSums sums;  // of these lanes
+    // All but the radiance.
+    void clear();
+
+  private:
+    ArrivingLight arriving_;
+    LaneVec3 diffuse_;
+    GroupLight groups_;
+};
+
 // Adds a light's or a lane's radiance to the pass of its group; without effect where there is none.
 inline void add_to_group(uint32_t group, int lane, const Vec3& radiance, const BlockSums& sums) {
     if (group >= 1 && group <= kLightGroups) sums.add(static_cast<PassId>(kLightGroup1 + group - 1), lane, radiance);
@@ -26,13 +36,10 @@ struct SeenSurfaces {
     const Snapshot& snapshot;
     const Points& points;
     const Coefficients& coefficients;
-    const LaneVec3& radiance;            // 0 where a lane sees nothing
-    const LaneVec3* throughput;          // of the surfaces before; null: there is none
-    const ArrivingLight* arriving;       // null: all light arrives, or the Shadow pass was not asked for
-    const LaneVec3* diffuse = nullptr;   // what lights add to radiance by K_D; null: not asked for
-    Vec3 ambient{0, 0, 0};               // I_A
-    const GroupLight* groups = nullptr;  // what groups of lights add to radiance; null: not asked for
-    bool straight = true;  // K_T lets what lies straight behind shine through; false: rays are traced for it
+    LightSums light;             // 0 where a lane sees nothing; where `arriving` is null, all light arrives
+    const LaneVec3* throughput;  // of the surfaces before; null: there is none
+    Vec3 ambient{0, 0, 0};       // I_A
+    bool straight = true;        // K_T lets what lies straight behind shine through; false: rays are traced for it
 };
 
 // Adds the lanes that see a surface. `first`: null, or in the first sample, whether a lane has its values of passes

@@ -84,6 +84,8 @@ struct Rasterizer {
     TileLists tiles;
     mutable tbb::enumerable_thread_specific<std::unique_ptr<Workspace>> workspaces;
 
+    ArrivingLight* arriving(Shading& w) const { return wants_shadow_pass ? &w.arriving : nullptr; }
+
     void prepare();
     void shade_all_vertices(const std::vector<uint8_t>& wanted);
     void tile(const TileWork& work) const;
@@ -154,8 +156,7 @@ void Rasterizer::illuminate(uint32_t block_x, uint32_t block_y, const LightShare
         add_lights(
             snapshot, illumination, lights.coherence,
             [&](uint32_t pair, float* u, float* v) { random_pair(block_x, block_y, sequence, s, pair, u, v); }, points,
-            w.coefficients, {one ? w.radiance : w.lit, wants_shadow_pass ? &w.arriving : nullptr}, w.lights, w.program,
-            shadows);
+            w.coefficients, {one ? w.radiance : w.lit, arriving(w)}, w.lights, w.program, shadows);
     const float share = 1 / static_cast<float>(lights.count);
     for (int c = 0; c < 3 && !one; ++c)
         for (int i = 0; i < kBatch; ++i) w.radiance[c][i] += share * w.lit[c][i];
@@ -235,9 +236,8 @@ bool Rasterizer::merge(uint32_t place, Workspace& w) const {
                 sums.clear();
                 return false;
             }
-            add_surfaces(
-                {snapshot, w.points, w.coefficients, w.radiance, &w.shares, wants_shadow_pass ? &w.arriving : nullptr},
-                round == 0 ? first : nullptr, sums);
+            add_surfaces({snapshot, w.points, w.coefficients, {w.radiance, arriving(w)}, &w.shares},
+                         round == 0 ? first : nullptr, sums);
         }
         if (round == 0) finish_depth(first, sums);
     }
@@ -285,9 +285,8 @@ bool Rasterizer::block(uint32_t place, BlockSamples& samples, uint32_t sample, i
               {sample * lights, lights,
                layer == 0 && evaluation != Evaluation::polygon ? Coherence::coherent : Coherence::incoherent},
               w);
-        add_surfaces(
-            {snapshot, w.points, w.coefficients, w.radiance, throughput, wants_shadow_pass ? &w.arriving : nullptr},
-            sample == 0 ? first : nullptr, sums);
+        add_surfaces({snapshot, w.points, w.coefficients, {w.radiance, arriving(w)}, throughput},
+                     sample == 0 ? first : nullptr, sums);
     }
     if (layered)
         for (int i = 0; i < kBatch; ++i) {

@@ -15,13 +15,11 @@ namespace {
 
 // What a thread works with; large, so made once for a tile.
 struct Workspace {
-    Workspace() { prepare(rays, kSeenByCamera); }
+    explicit Workspace(const PassList& passes) : light(passes) { prepare(rays, kSeenByCamera); }
     BlockRays rays;
     Points points;
     Coefficients coefficients;
-    LaneVec3 radiance, diffuse;
-    GroupLight groups;
-    ArrivingLight arriving;
+    LightLanes light;
     LaneVec3 throughput;
     SeenLights seen;
     uint8_t active[kBatch], missed[kBatch];
@@ -35,7 +33,7 @@ struct Caster {
     const RenderJob& job;
     const Snapshot& snapshot;
     RayMaker maker;
-    bool wants_shadow_pass, wants_parts, wants_groups, sees_lights;
+    bool sees_lights;
 
     void tile(const TileWork& work) const;
     void block(uint32_t block_x, uint32_t block_y, const TileWork& work, Workspace& w) const;
@@ -44,7 +42,7 @@ struct Caster {
     void add_seen_lights(Workspace& w) const;
 };
 
-// The equation at all points of the batch, into w.radiance.
+// The equation at all points of the batch, into w.light.
 void Caster::shade(uint32_t block_x, uint32_t block_y, uint32_t sample, Coherence coherence, Workspace& w) const {
     const auto start = Clock::now();
     const Illumination& illumination = job.settings.illumination;
@@ -54,18 +52,13 @@ void Caster::shade(uint32_t block_x, uint32_t block_y, uint32_t sample, Coherenc
                          maker.view.y * (maker.view.step_y * maker.footprint)},
                         w.points);
     evaluate(snapshot, w.points, w.coefficients, w.program);
-    add_ambient(w.points, w.coefficients, illumination.ambient, w.radiance);
-    if (wants_shadow_pass) w.arriving.clear();
-    if (wants_parts) w.diffuse.clear();
-    if (wants_groups) w.groups.clear();
+    add_ambient(w.points, w.coefficients, illumination.ambient, w.light.radiance);
+    w.light.clear();
     ShadowCounts shadows;
     add_lights(
         snapshot, illumination, coherence,
         [&](uint32_t pair, float* u, float* v) { random_pair(block_x, block_y, maker.sequence, sample, pair, u, v); },
-        w.points, w.coefficients,
-        {w.radiance, wants_shadow_pass ? &w.arriving : nullptr, wants_parts ? &w.diffuse : nullptr,
-         wants_groups ? &w.groups : nullptr},
-        w.lights, w.program, shadows);
+        w.points, w.coefficients, w.light.sums, w.lights, w.program, shadows);
     job.counts->shadow_rays += shadows.rays;
     job.counts->shadow_time += shadows.nanoseconds;
     job.counts->shading_time += nanoseconds(start, Clock::now()) - shadows.nanoseconds;
@@ -109,9 +102,8 @@ uint32_t Caster::layers(uint32_t block_x, uint32_t block_y, uint32_t sample, Wor
         if (!found.any_hit) break;
         shade(block_x, block_y, sample, coherence, w);
         if (layer == 0 && job.settings.adaptive.threshold > 0) edges = packets_at_edges(w.points);
-        add_surfaces({snapshot, w.points, w.coefficients, w.radiance, layer > 0 ? &w.throughput : nullptr,
-                      wants_shadow_pass ? &w.arriving : nullptr, wants_parts ? &w.diffuse : nullptr,
-                      job.settings.illumination.ambient, wants_groups ? &w.groups : nullptr},
+        add_surfaces({snapshot, w.points, w.coefficients, w.light.sums, layer > 0 ? &w.throughput : nullptr,
+                      job.settings.illumination.ambient},
                      sample == 0 ? first : nullptr, w.sums);
         if (!w.points.any_holes && !w.points.any_transmission) break;
 
@@ -143,7 +135,7 @@ void Caster::block(uint32_t block_x, uint32_t block_y, const TileWork& work, Wor
 }
 
 void Caster::tile(const TileWork& work) const {
-    const auto w = std::make_unique<Workspace>();
+    const auto w = std::make_unique<Workspace>(job.film->passes());
     for (uint32_t y = work.block_y0; y < work.block_y1; ++y)
         for (uint32_t x = work.block_x0; x < work.block_x1; ++x) block(x, y, work, *w);
 }
@@ -153,13 +145,9 @@ void Caster::tile(const TileWork& work) const {
 bool ray_casting(RenderJob& job, const RenderEvents& events) {
     const Window& window = job.film->window();
     const Settings& settings = job.settings;
-    const Caster caster{job,
-                        *job.snapshot,
+    const Caster caster{job, *job.snapshot,
                         make_ray_maker(*job.snapshot, settings, PixelFilter(settings.filter, settings.filter_width),
                                        window.width, window.height),
-                        job.film->passes().has(kShadow),
-                        wants_light_parts(job.film->passes()),
-                        wants_light_groups(job.film->passes()),
                         std::any_of(job.snapshot->lights.begin(), job.snapshot->lights.end(),
                                     [](const ReadyLight& l) { return l.visible_camera; })};
     if (events.log)

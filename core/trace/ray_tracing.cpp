@@ -15,7 +15,7 @@ void find_solids_around_eye(Tracer& tracer) {
     const Snapshot& snapshot = tracer.snapshot;
     if (!tracer.maker.view.perspective || !snapshot.seen_through) return;
     constexpr int kMostHits = 4096;
-    const auto w = std::make_unique<TreeWorkspace>(snapshot);
+    const auto w = std::make_unique<TreeWorkspace>(snapshot, tracer.job.film->passes());
     std::vector<uint32_t> entered;
     std::fill_n(w->active, kBatch, uint8_t{0});
     w->active[0] = 1;
@@ -60,9 +60,6 @@ Tracer make_tracer(const RenderJob& job, const PixelFilter& filter, bool one_way
                   make_ray_maker(snapshot, job.settings, filter, window.width, window.height),
                   job.settings.illumination,
                   one_way,
-                  job.film->passes().has(kShadow),
-                  wants_light_parts(job.film->passes()),
-                  wants_light_groups(job.film->passes()),
                   any_light([](const ReadyLight& l) { return l.visible_camera; }),
                   any_light([](const ReadyLight& l) { return l.kind == ReadyLight::Kind::area; }),
                   0,
@@ -101,7 +98,7 @@ bool path_tracing(RenderJob& job, const RenderEvents& events) {
 std::vector<RayNode> trace_ray_tree(const RenderJob& job, uint32_t x, uint32_t y) {
     Tracer tracer = make_tracer(job, PixelFilter(PixelFilter::Kind::box, 0), false);
     tracer.maker.view.aperture_radius = 0;
-    const auto w = std::make_unique<TreeWorkspace>(*job.snapshot);
+    const auto w = std::make_unique<TreeWorkspace>(*job.snapshot, job.film->passes());
     std::vector<RayNode> tree(1);
     w->tree = &tree;
     tracer.begin_block(x / kBlockSide, y / kBlockSide, *w);

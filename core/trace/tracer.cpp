@@ -30,7 +30,7 @@ void Tracer::record_hit(const PathRay& ray, int i, float distance, TreeWorkspace
     node.material = w.points.material[i];
     node.position = w.points.position.get(i);
     node.normal = w.points.normal.get(i);
-    node.local += w.radiance.get(i) * w.coefficients.alpha[i];
+    node.local += w.light.radiance.get(i) * w.coefficients.alpha[i];
 }
 
 // Area lights that the camera sees, in front of what was hit: a lane that meets one is done.
@@ -113,10 +113,8 @@ uint32_t Tracer::primary(uint32_t block_x, uint32_t block_y, uint32_t sample, Tr
             },
             w);
         if (layer == 0 && job.settings.adaptive.threshold > 0) edges = packets_at_edges(w.points);
-        add_surfaces(
-            {snapshot, w.points, w.coefficients, w.radiance, throughput, wants_shadow_pass ? &w.arriving : nullptr,
-             wants_parts ? &w.diffuse : nullptr, illumination.ambient, wants_groups ? &w.groups : nullptr, false},
-            sample == 0 ? first : nullptr, w.sums);
+        add_surfaces({snapshot, w.points, w.coefficients, w.light.sums, throughput, illumination.ambient, false},
+                     sample == 0 ? first : nullptr, w.sums);
         const bool bounces = one_way || w.points.any_mirror || w.points.any_transmission;
         for (int i = 0; i < kBatch && (bounces || w.tree); ++i) {
             if (w.points.slot[i] == kNoSlot) continue;
@@ -287,12 +285,13 @@ void Tracer::secondary(TreeWorkspace& w) const {
         shade(
             Coherence::incoherent,
             [&](uint32_t pair, float* u, float* v) { random_pair_of(w.keys, w.indices, pair, u, v); }, w);
+        const GroupLight* const groups = w.light.sums.groups;
         for (int i = 0; i < count; ++i) {
             if (w.points.slot[i] == kNoSlot) continue;
-            gain(w.rays[i], w.radiance.get(i) * w.coefficients.alpha[i], w);
-            for (uint32_t group = 1; group <= kLightGroups && wants_groups; ++group)
+            gain(w.rays[i], w.light.radiance.get(i) * w.coefficients.alpha[i], w);
+            for (uint32_t group = 1; group <= kLightGroups && groups; ++group)
                 add_to_group(group, w.rays[i].lane,
-                             w.rays[i].weight * w.groups.of[group - 1].get(i) * w.coefficients.alpha[i], w.sums);
+                             w.rays[i].weight * groups->of[group - 1].get(i) * w.coefficients.alpha[i], w.sums);
             if (w.tree) record_hit(w.rays[i], i, w.points.depth[i], w);
             pass_hole(i, w.rays[i], w);
             spawn(i, w.rays[i], w.points.depth[i], w);
@@ -329,7 +328,7 @@ void Tracer::block(uint32_t block_x, uint32_t block_y, const TileWork& work, Tre
 }
 
 void Tracer::tile(const TileWork& work) const {
-    const auto w = std::make_unique<TreeWorkspace>(snapshot);
+    const auto w = std::make_unique<TreeWorkspace>(snapshot, job.film->passes());
     for (uint32_t y = work.block_y0; y < work.block_y1; ++y)
         for (uint32_t x = work.block_x0; x < work.block_x1; ++x) block(x, y, work, *w);
     job.counts->reflection_rays += w->rays_of[static_cast<int>(Way::reflection)];

@@ -42,17 +42,16 @@ struct PathRay {
 
 // What a thread works with; large, so made once for a tile.
 struct TreeWorkspace {
-    explicit TreeWorkspace(const Snapshot& snapshot) : media(snapshot) {
+    TreeWorkspace(const Snapshot& snapshot, const PassList& passes) : light(passes), media(snapshot) {
         prepare(primary, kSeenByCamera);
         prepare(secondary, kSeenByCamera | kCastsShadow | kFiltersShadow | kTransmitsShadow);
     }
     BlockRays primary, secondary;
     Points points;
     Coefficients coefficients;
-    GroupLight groups;
-    LaneVec3 radiance, diffuse, background, steps[2];
+    LightLanes light;
+    LaneVec3 background, steps[2];
     Bounces bounces;
-    ArrivingLight arriving;
     LaneVec3 throughput;
     SeenLights seen;
     uint8_t active[kBatch], missed[kBatch], lamps_sampled[kBatch];
@@ -83,7 +82,7 @@ struct Tracer {
     RayMaker maker;
     Illumination illumination;
     bool one_way;  // paths, not trees
-    bool wants_shadow_pass, wants_parts, wants_groups, sees_lights, any_area_lights;
+    bool sees_lights, any_area_lights;
     float pixel_step;                                       // of a primary ray's footprint, at depth 1
     std::vector<std::pair<uint32_t, uint32_t>> around_eye;  // slots and materials of the solids that the eye is in
 

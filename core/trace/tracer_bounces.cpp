@@ -45,15 +45,11 @@ void Tracer::shade(Coherence coherence, const RandomPairs& random, TreeWorkspace
     cross_surfaces(w);
     for (int i = 0; i < kBatch; ++i)
         if (w.lamps_sampled[i]) w.coefficients.emission.set(i, {0, 0, 0});
-    add_ambient(w.points, w.coefficients, illumination.ambient, w.radiance);
-    if (wants_shadow_pass) w.arriving.clear();
+    add_ambient(w.points, w.coefficients, illumination.ambient, w.light.radiance);
+    w.light.clear();
     ShadowCounts shadows;
-    if (wants_parts) w.diffuse.clear();
-    if (wants_groups) w.groups.clear();
-    add_lights(snapshot, illumination, coherence, random, w.points, w.coefficients,
-               {w.radiance, wants_shadow_pass ? &w.arriving : nullptr, wants_parts ? &w.diffuse : nullptr,
-                wants_groups ? &w.groups : nullptr},
-               w.lights, w.program, shadows);
+    add_lights(snapshot, illumination, coherence, random, w.points, w.coefficients, w.light.sums, w.lights, w.program,
+               shadows);
     job.counts->shadow_rays += shadows.rays;
     job.counts->shadow_time += shadows.nanoseconds;
     w.shadow_time = shadows.nanoseconds;
