@@ -4,7 +4,6 @@
 #include "raster/line_drawing.h"
 #include "raster/rasterizer.h"
 #include "scene/nodes.h"
-#include "trace/ray_casting.h"
 #include "trace/ray_tracing.h"
 
 namespace trp {

@@ -148,11 +148,12 @@ void add_surfaces(const SeenSurfaces& seen, uint8_t* first, const BlockSums& sum
     }
 }
 
-Vec3 throughput_behind(const Points& points, const Coefficients& coefficients, int lane, const Vec3& throughput) {
+Vec3 throughput_behind(const Points& points, const Coefficients& coefficients, int lane, const Vec3& throughput,
+                       bool straight) {
     constexpr float kLeast = 1e-3f;
     const float alpha = coefficients.alpha[lane];
     Vec3 left = throughput * (1 - alpha);
-    if (points.any_transmission) left += throughput * coefficients.transmission.get(lane) * alpha;
+    if (straight && points.any_transmission) left += throughput * coefficients.transmission.get(lane) * alpha;
     return std::max({left.x, left.y, left.z}) < kLeast ? Vec3(0, 0, 0) : left;
 }
 

@@ -46,9 +46,10 @@ struct SeenSurfaces {
 // that are not averaged; they are written for those that have not, and marked.
 void add_surfaces(const SeenSurfaces& seen, uint8_t* first, const BlockSums& sums);
 
-// What goes on to the surface behind a lane's: throughput (1 − α + α K_T), along the straight way; 0 where it is next
-// to nothing.
-Vec3 throughput_behind(const Points& points, const Coefficients& coefficients, int lane, const Vec3& throughput);
+// What goes on to the surface behind a lane's, along the straight way: throughput (1 − α + α K_T), or, where K_T is not
+// `straight`, throughput (1 − α); 0 where it is next to nothing.
+Vec3 throughput_behind(const Points& points, const Coefficients& coefficients, int lane, const Vec3& throughput,
+                       bool straight = true);
 
 // Adds the background to the lanes that are `missed`.
 void add_background(const Snapshot& snapshot, const LaneVec3& directions, const uint8_t* missed,

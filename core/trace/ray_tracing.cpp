@@ -49,7 +49,7 @@ void find_solids_around_eye(Tracer& tracer) {
     }
 }
 
-Tracer make_tracer(const RenderJob& job, const PixelFilter& filter, bool one_way) {
+Tracer make_tracer(const RenderJob& job, const PixelFilter& filter, Branches branches) {
     const Window& window = job.film->window();
     const Snapshot& snapshot = *job.snapshot;
     const auto any_light = [&](auto&& wanted) {
@@ -59,44 +59,46 @@ Tracer make_tracer(const RenderJob& job, const PixelFilter& filter, bool one_way
                   snapshot,
                   make_ray_maker(snapshot, job.settings, filter, window.width, window.height),
                   job.settings.illumination,
-                  one_way,
+                  branches,
                   any_light([](const ReadyLight& l) { return l.visible_camera; }),
                   any_light([](const ReadyLight& l) { return l.kind == ReadyLight::Kind::area; }),
                   0,
                   {}};
+    tracer.pixel_step = std::max(tracer.maker.view.step_x, tracer.maker.view.step_y) * tracer.maker.footprint;
+    if (tracer.straight()) return tracer;
     tracer.illumination.mirrors = true;
     // What a transparent body casts on a path's surfaces is found by the paths that go through it.
-    if (one_way) tracer.illumination.transparent_shadows = TransparentShadows::opaque;
-    tracer.pixel_step = std::max(tracer.maker.view.step_x, tracer.maker.view.step_y) * tracer.maker.footprint;
+    if (tracer.one_way()) tracer.illumination.transparent_shadows = TransparentShadows::opaque;
     find_solids_around_eye(tracer);
     return tracer;
 }
 
-}  // namespace
-
-namespace {
-
-bool trace_film(RenderJob& job, const RenderEvents& events, bool one_way) {
-    const Tracer tracer = make_tracer(job, PixelFilter(job.settings.filter, job.settings.filter_width), one_way);
+bool trace_film(RenderJob& job, const RenderEvents& events, Branches branches) {
+    const Tracer tracer = make_tracer(job, PixelFilter(job.settings.filter, job.settings.filter_width), branches);
     const Window& window = job.film->window();
     if (events.log)
-        events.log(fmt::format("{} x {} pixels, {} samples, {} lights, depth {}", window.w, window.h,
-                               job.settings.samples, job.snapshot->lights.size(), job.settings.trace.depth));
+        events.log(fmt::format("{} x {} pixels, {} samples, {} lights{}", window.w, window.h, job.settings.samples,
+                               job.snapshot->lights.size(),
+                               tracer.straight() ? "" : fmt::format(", depth {}", job.settings.trace.depth)));
     return run_tiles(job, events, [&](const TileWork& work) { tracer.tile(work); });
 }
 
 }  // namespace
 
+bool ray_casting(RenderJob& job, const RenderEvents& events) {
+    return trace_film(job, events, Branches::none);
+}
+
 bool ray_tracing(RenderJob& job, const RenderEvents& events) {
-    return trace_film(job, events, false);
+    return trace_film(job, events, Branches::all);
 }
 
 bool path_tracing(RenderJob& job, const RenderEvents& events) {
-    return trace_film(job, events, true);
+    return trace_film(job, events, Branches::one);
 }
 
 std::vector<RayNode> trace_ray_tree(const RenderJob& job, uint32_t x, uint32_t y) {
-    Tracer tracer = make_tracer(job, PixelFilter(PixelFilter::Kind::box, 0), false);
+    Tracer tracer = make_tracer(job, PixelFilter(PixelFilter::Kind::box, 0), Branches::all);
     tracer.maker.view.aperture_radius = 0;
     const auto w = std::make_unique<TreeWorkspace>(*job.snapshot, job.film->passes());
     std::vector<RayNode> tree(1);

@@ -1,4 +1,4 @@
-// Recursive ray tracing: the ray tree (Whitted, "An Improved Illumination Model for Shaded Display", 1980).
+// The methods that trace rays.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,12 @@
 
 namespace trp {
 
-// Render into the job's film. Return false where it was cancelled.
+// All render into the job's film, and return false where that was cancelled.
+
+// Ray casting (Appel 1968; Goldstein and Nagel 1971): one primary ray to a sample, the equation with shadows, no
+// recursion.
+bool ray_casting(RenderJob& job, const RenderEvents& events);
+// Recursive ray tracing: the ray tree (Whitted, "An Improved Illumination Model for Shaded Display", 1980).
 bool ray_tracing(RenderJob& job, const RenderEvents& events);
 // Path tracing with next-event estimation (Kajiya, "The Rendering Equation", 1986): the tree, of which one branch is
 // followed at random, with diffuse and glossy reflection beside mirrors and transmission.

@@ -63,6 +63,59 @@ void Tracer::fade_primary(TreeWorkspace& w) const {
     }
 }
 
+// The background, to the primary rays that end there.
+void Tracer::add_missed(const LaneVec3* throughput, TreeWorkspace& w) const {
+    add_background(snapshot, w.primary.direction, w.missed, throughput, job.settings.transparent, w.sums);
+    if (!w.tree || !snapshot.world.visible_camera) return;
+    sample_background(snapshot, w.primary.direction, w.missed, w.background);
+    for (int i = 0; i < kBatch; ++i)
+        if (w.missed[i]) w.tree->front().local += w.background.get(i) * w.throughput.get(i);
+}
+
+// The first branches, from the surfaces that primary rays have met.
+void Tracer::spawn_primary(uint32_t sample, TreeWorkspace& w) const {
+    for (int i = 0; i < kBatch; ++i) {
+        if (w.points.slot[i] == kNoSlot) continue;
+        const Vec3 direction = w.primary.direction.get(i);
+        const float length = direction.length(), distance = w.points.depth[i] * length;
+        PathRay ray;
+        ray.origin = w.primary.origin.get(i);
+        ray.direction = direction / length;
+        ray.weight = w.throughput.get(i);
+        ray.key = w.primary.keys[i];
+        ray.index = w.primary.indices[i] + sample;
+        ray.medium = w.media_of[i];
+        ray.time = w.points.time[i];
+        ray.lane = static_cast<uint16_t>(i);
+        (maker.view.perspective ? ray.spread : ray.width) = pixel_step / (maker.view.perspective ? length : 1);
+        if (w.tree) {
+            const Vec3 before = w.tree->front().local;
+            record_hit(ray, i, 0, w);
+            RayNode& root = w.tree->front();
+            root.local = before + (root.local - before) * ray.weight;
+            root.distance = distance;
+        }
+        spawn(i, ray, distance, w);
+    }
+}
+
+// Primary rays go on behind the surfaces that let them through. Returns whether any does.
+bool Tracer::pass_primary(TreeWorkspace& w) const {
+    if (!w.points.any_holes && !(straight() && w.points.any_transmission)) return false;
+    bool any_left = false;
+    for (int i = 0; i < kBatch; ++i) {
+        w.active[i] = 0;
+        if (w.points.slot[i] == kNoSlot) continue;
+        w.throughput.set(i, throughput_behind(w.points, w.coefficients, i, w.throughput.get(i), straight()));
+        if (w.throughput.get(i) == Vec3(0, 0, 0)) continue;
+        w.active[i] = 1;
+        any_left = true;
+        if (w.coefficients.alpha[i] == 0 && !w.crosses[i]) w.media_of[i] = w.beyond[i];
+        pass_surface(w.primary, i, w.points, maker.view.clip_end);
+    }
+    return any_left;
+}
+
 // One sample of the active pixels of a block: the nearest surfaces, and where they have holes, those behind. Returns
 // the packets that see an edge.
 uint32_t Tracer::primary(uint32_t block_x, uint32_t block_y, uint32_t sample, TreeWorkspace& w) const {
@@ -90,14 +143,7 @@ uint32_t Tracer::primary(uint32_t block_x, uint32_t block_y, uint32_t sample, Tr
         const Found found = find_missed(w.active, w.points, w.missed);
         if (starts_inside) fade_primary(w);
         const LaneVec3* const throughput = layer > 0 || starts_inside ? &w.throughput : nullptr;
-        if (found.any_missed) {
-            add_background(snapshot, w.primary.direction, w.missed, throughput, job.settings.transparent, w.sums);
-            if (w.tree && snapshot.world.visible_camera) {
-                sample_background(snapshot, w.primary.direction, w.missed, w.background);
-                for (int i = 0; i < kBatch; ++i)
-                    if (w.missed[i]) w.tree->front().local += w.background.get(i) * w.throughput.get(i);
-            }
-        }
+        if (found.any_missed) add_missed(throughput, w);
         if (!found.any_hit) break;
         const auto shading = Clock::now();
         locate(snapshot, job.settings.normals(), w.points);
@@ -113,48 +159,12 @@ uint32_t Tracer::primary(uint32_t block_x, uint32_t block_y, uint32_t sample, Tr
             },
             w);
         if (layer == 0 && job.settings.adaptive.threshold > 0) edges = packets_at_edges(w.points);
-        add_surfaces({snapshot, w.points, w.coefficients, w.light.sums, throughput, illumination.ambient, false},
+        add_surfaces({snapshot, w.points, w.coefficients, w.light.sums, throughput, illumination.ambient, straight()},
                      sample == 0 ? first : nullptr, w.sums);
-        const bool bounces = one_way || w.points.any_mirror || w.points.any_transmission;
-        for (int i = 0; i < kBatch && (bounces || w.tree); ++i) {
-            if (w.points.slot[i] == kNoSlot) continue;
-            const Vec3 direction = w.primary.direction.get(i);
-            const float length = direction.length(), distance = w.points.depth[i] * length;
-            PathRay ray;
-            ray.origin = w.primary.origin.get(i);
-            ray.direction = direction / length;
-            ray.weight = w.throughput.get(i);
-            ray.key = w.primary.keys[i];
-            ray.index = w.primary.indices[i] + sample;
-            ray.medium = w.media_of[i];
-            ray.time = w.points.time[i];
-            ray.lane = static_cast<uint16_t>(i);
-            (maker.view.perspective ? ray.spread : ray.width) = pixel_step / (maker.view.perspective ? length : 1);
-            if (w.tree) {
-                const Vec3 before = w.tree->front().local;
-                record_hit(ray, i, 0, w);
-                RayNode& root = w.tree->front();
-                root.local = before + (root.local - before) * ray.weight;
-                root.distance = distance;
-            }
-            spawn(i, ray, distance, w);
-        }
+        const bool bounces = one_way() || w.points.any_mirror || w.points.any_transmission;
+        if (!straight() && (bounces || w.tree)) spawn_primary(sample, w);
         job.counts->shading_time += nanoseconds(shading, Clock::now()) - w.shadow_time;
-        if (!w.points.any_holes) break;
-
-        bool any_left = false;
-        for (int i = 0; i < kBatch; ++i) {
-            w.active[i] = 0;
-            if (w.points.slot[i] == kNoSlot) continue;
-            const Vec3 left = w.throughput.get(i) * (1 - w.coefficients.alpha[i]);
-            w.throughput.set(i, left);
-            if (std::max({left.x, left.y, left.z}) < 1e-3f) continue;
-            w.active[i] = 1;
-            any_left = true;
-            if (w.coefficients.alpha[i] == 0 && !w.crosses[i]) w.media_of[i] = w.beyond[i];
-            pass_surface(w.primary, i, w.points, maker.view.clip_end);
-        }
-        if (!any_left) break;
+        if (!pass_primary(w)) break;
         coherence = Coherence::incoherent;
     }
     if (sample == 0) finish_depth(first, w.sums);
@@ -255,7 +265,7 @@ void Tracer::pass_hole(int i, const PathRay& ray, TreeWorkspace& w) const {
         w.tree->push_back(node);
     }
     const float greatest = std::max({behind.weight.x, behind.weight.y, behind.weight.z});
-    if (greatest > 0 && (one_way || greatest >= job.settings.trace.least_weight)) w.stack.push_back(behind);
+    if (greatest > 0 && (one_way() || greatest >= job.settings.trace.least_weight)) w.stack.push_back(behind);
 }
 
 void Tracer::secondary(TreeWorkspace& w) const {

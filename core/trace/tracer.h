@@ -8,6 +8,8 @@
 // A path is a tree of which only one branch is followed at each surface, chosen at random by what it would count for,
 // and to which diffuse and glossy reflection have been added. Through a hole that is not clear both go on: the
 // surface's branch and the ray itself.
+//
+// Ray casting follows no branch: primary rays alone, which go straight on through holes and by K_T.
 #pragma once
 
 #include "film/surface_passes.h"
@@ -21,6 +23,9 @@ namespace trp {
 // How a ray goes on from a surface.
 enum class Way : uint8_t { reflection, transmission, diffuse };
 inline constexpr int kWays = 3;
+
+// Those of a surface that are followed: ray casting, trees, paths.
+enum class Branches : uint8_t { none, all, one };
 
 struct PathRay {
     Vec3 origin{0, 0, 0}, direction{0, 0, 1};  // unit
@@ -81,10 +86,13 @@ struct Tracer {
     const Snapshot& snapshot;
     RayMaker maker;
     Illumination illumination;
-    bool one_way;  // paths, not trees
+    Branches branches;
     bool sees_lights, any_area_lights;
     float pixel_step;                                       // of a primary ray's footprint, at depth 1
     std::vector<std::pair<uint32_t, uint32_t>> around_eye;  // slots and materials of the solids that the eye is in
+
+    bool straight() const { return branches == Branches::none; }
+    bool one_way() const { return branches == Branches::one; }
 
     // Of blocks.
     void tile(const TileWork& work) const;
@@ -96,6 +104,9 @@ struct Tracer {
     uint32_t primary(uint32_t block_x, uint32_t block_y, uint32_t sample, TreeWorkspace& w) const;
     void add_seen_lights(TreeWorkspace& w) const;
     void fade_primary(TreeWorkspace& w) const;
+    void add_missed(const LaneVec3* throughput, TreeWorkspace& w) const;
+    void spawn_primary(uint32_t sample, TreeWorkspace& w) const;
+    bool pass_primary(TreeWorkspace& w) const;
 
     // Of the rays on the stack.
     void secondary(TreeWorkspace& w) const;

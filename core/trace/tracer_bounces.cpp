@@ -53,10 +53,11 @@ void Tracer::shade(Coherence coherence, const RandomPairs& random, TreeWorkspace
     job.counts->shadow_rays += shadows.rays;
     job.counts->shadow_time += shadows.nanoseconds;
     w.shadow_time = shadows.nanoseconds;
+    if (straight()) return;
     const bool bounces = w.points.any_mirror || w.points.any_transmission;
     if (bounces) find_bounces(w.points, w.coefficients, w.bounces);
-    if (one_way || (bounces && job.settings.trace.rough)) random(kTurnPair, w.turn_u, w.turn_v);
-    if (one_way) random(kChoicePair, w.choice, w.survival);
+    if (one_way() || (bounces && job.settings.trace.rough)) random(kTurnPair, w.turn_u, w.turn_v);
+    if (one_way()) random(kChoicePair, w.choice, w.survival);
     if (bounces && job.settings.trace.rough) roughen(w);
 }
 
@@ -79,7 +80,7 @@ void Tracer::roughen(TreeWorkspace& w) const {
 
 // For each lane: on which side of which solids its rays go on. A surface whose space another solid fills is not there.
 void Tracer::cross_surfaces(TreeWorkspace& w) const {
-    if (!w.points.any_mirror && !w.points.any_transmission) {
+    if (straight() || (!w.points.any_mirror && !w.points.any_transmission)) {
         std::copy_n(w.media_of, kBatch, w.beyond);
         std::fill_n(w.crosses, kBatch, uint8_t{0});
         return;
@@ -122,7 +123,7 @@ void Tracer::push(const PathRay& parent, int i, Way way, const Vec3& direction, 
     ++ray.ways[k];
     if (parent.depth() == 0) ray.part = kParts[k];
     const bool too_deep = ray.depth() > limits.depth || ray.ways[k] > limits.ways[k];
-    const bool too_weak = !one_way && greatest(ray.weight) < limits.least_weight;
+    const bool too_weak = !one_way() && greatest(ray.weight) < limits.least_weight;
     const Vec3 normal = w.points.geometric_normal.get(i);
     const float offset = w.points.offset[i] * (normal.dot(direction) < 0 ? -1.0f : 1.0f);
     ray.origin = w.points.position.get(i) + normal * offset;
@@ -154,7 +155,7 @@ void Tracer::spawn(int i, const PathRay& parent, float distance, TreeWorkspace& 
     if (!(alpha > 0)) return;
     PathRay ray = parent;
     ray.width += ray.spread * distance;
-    if (one_way) return spawn_one(i, ray, w);
+    if (one_way()) return spawn_one(i, ray, w);
     const uint8_t flags = snapshot.material_flags[w.points.material[i]];
     if (flags & (kMirrors | kTransmits))
         push(ray, i, Way::reflection, w.bounces.mirror_direction.get(i), w.bounces.mirror_weight.get(i) * alpha, w);
