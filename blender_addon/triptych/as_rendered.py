@@ -80,6 +80,14 @@ def export_to_render(scene, view_layer=None):
     return result
 
 
+def no_render_runs(operator):
+    """For the poll of an operator that exports, which a render that is running would not let it do."""
+    if bpy.app.is_job_running("RENDER"):
+        operator.poll_message_set("A render is running")
+        return False
+    return True
+
+
 @contextmanager
 def _render_result_kept():
     """The export goes by way of a render; it gets a slot of its own, so that the user's picture stays."""

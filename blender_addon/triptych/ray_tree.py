@@ -13,7 +13,7 @@ import numpy as np
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 
 from . import abi, core, data
-from .as_rendered import export_to_render
+from .as_rendered import export_to_render, no_render_runs
 from .engine import window
 from .export_scene import film_size
 
@@ -266,10 +266,7 @@ class TRIPTYCH_OT_ray_tree(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        if bpy.app.is_job_running("RENDER"):
-            cls.poll_message_set("A render is running")
-            return False
-        return True
+        return no_render_runs(cls)
 
     def invoke(self, context, event):
         if self.properties.is_property_set("pixel"):

@@ -11,7 +11,7 @@ import bpy
 import numpy as np
 
 from . import abi, core, data, lettering
-from .as_rendered import export_to_render
+from .as_rendered import export_to_render, no_render_runs
 
 METHODS = ("flat", "gouraud", "phong")
 IMAGE = "Triptych Shadings"
@@ -209,10 +209,7 @@ class TRIPTYCH_OT_shading_sheet(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        if bpy.app.is_job_running("RENDER"):
-            cls.poll_message_set("A render is running")
-            return False
-        return True
+        return no_render_runs(cls)
 
     def invoke(self, context, event):
         return context.window_manager.invoke_props_dialog(self)
