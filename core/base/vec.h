@@ -53,12 +53,20 @@ struct Affine {
     }
 };
 
-// Of steps that are evenly spaced over the times 0 to 1, linear between two: at least one.
+// Between which two of a count of steps, evenly spaced over the times 0 to 1, a time lies, and the later one's share.
+struct TimeStep {
+    size_t before, after;
+    float share;
+};
+inline TimeStep time_step_at(float time, size_t count) {
+    const float at = time * static_cast<float>(count - 1);
+    const size_t before = std::min(static_cast<size_t>(std::max(at, 0.0f)), count - 1);
+    return {before, std::min(before + 1, count - 1), at - static_cast<float>(before)};
+}
+
+// Linear between two steps, of which there is at least one.
 inline Affine at_time(const std::vector<Affine>& steps, float time) {
-    const float at = time * static_cast<float>(steps.size() - 1);
-    const auto before = std::min(static_cast<size_t>(std::max(at, 0.0f)), steps.size() - 1),
-               after = std::min(before + 1, steps.size() - 1);
-    const float share = at - static_cast<float>(before);
+    const auto [before, after, share] = time_step_at(time, steps.size());
     Affine out = steps[before];
     for (int r = 0; r < 3; ++r)
         for (int c = 0; c < 4; ++c) out.rows[r][c] += share * (steps[after].rows[r][c] - steps[before].rows[r][c]);

@@ -126,15 +126,14 @@ class PlacedGeometry {
         for (uint32_t step = 0; step < steps; ++step) {
             const float time = steps > 1 ? static_cast<float>(step) / static_cast<float>(steps - 1) : 0;
             const Affine world_from_object = at_time(placement.world_from_object, time);
-            const float at = time * static_cast<float>(mesh.time_count - 1);
-            const auto before = std::min(static_cast<uint32_t>(at), mesh.time_count - 1),
-                       after = std::min(before + 1, mesh.time_count - 1);
-            const float share = at - static_cast<float>(before);
-            const Vec3 *const from = &mesh.positions[before * vertices], *const to = &mesh.positions[after * vertices];
+            const TimeStep of_mesh = time_step_at(time, mesh.time_count);
+            const Vec3 *const from = &mesh.positions[of_mesh.before * vertices],
+                              *const to = &mesh.positions[of_mesh.after * vertices];
             Vec3* const out = &moved[step * vertices];
             parallel_ranges(vertices, 1 << 15, [&](size_t begin, size_t end) {
                 for (size_t v = begin; v < end; ++v)
-                    out[v] = world_from_object.point(share > 0 ? from[v] + (to[v] - from[v]) * share : from[v]);
+                    out[v] = world_from_object.point(of_mesh.share > 0 ? from[v] + (to[v] - from[v]) * of_mesh.share
+                                                                       : from[v]);
             });
         }
     }

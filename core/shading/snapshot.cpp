@@ -247,12 +247,10 @@ void fill_info(const Scene& scene, Snapshot& snapshot) {
 }  // namespace
 
 Vec3 PlacedSurface::world_position(uint32_t vertex, float time) const {
-    const float at = time * static_cast<float>(position_steps - 1);
-    const auto before = std::min(static_cast<uint32_t>(at), position_steps - 1),
-               after = std::min(before + 1, position_steps - 1);
+    const auto [before, after, share] = time_step_at(time, position_steps);
     const size_t vertices = mesh->vertex_count;
     const Vec3 from = positions[before * vertices + vertex], to = positions[after * vertices + vertex];
-    const Vec3 position = from + (to - from) * (at - static_cast<float>(before));
+    const Vec3 position = from + (to - from) * share;
     return baked            ? position
            : motion.empty() ? world_from_object.point(position)
                             : at_time(motion, time).point(position);
