@@ -73,6 +73,15 @@ inline Affine at_time(const std::vector<Affine>& steps, float time) {
     return out;
 }
 
+inline float greatest(const Vec3& v) {
+    return std::max({v.x, v.y, v.z});
+}
+
+// A unit vector at right angles to one.
+inline Vec3 perpendicular_to(const Vec3& unit) {
+    return (std::abs(unit.z) < 0.9f ? Vec3(0, 0, 1) : Vec3(1, 0, 0)).cross(unit).normalized();
+}
+
 inline float luminance(const Vec3& c) {  // Rec. 709
     return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z;
 }

@@ -154,7 +154,7 @@ Vec3 throughput_behind(const Points& points, const Coefficients& coefficients, i
     const float alpha = coefficients.alpha[lane];
     Vec3 left = throughput * (1 - alpha);
     if (straight && points.any_transmission) left += throughput * coefficients.transmission.get(lane) * alpha;
-    return std::max({left.x, left.y, left.z}) < kLeast ? Vec3(0, 0, 0) : left;
+    return greatest(left) < kLeast ? Vec3(0, 0, 0) : left;
 }
 
 void add_background(const Snapshot& snapshot, const LaneVec3& directions, const uint8_t* missed,

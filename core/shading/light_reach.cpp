@@ -63,9 +63,8 @@ namespace trp {
 HWY_EXPORT(reached_lanes);
 
 float ReadyLight::strength() const {
-    const float greatest = std::max({emission.x, emission.y, emission.z});
     const float focus = kind == Kind::area && spread_tangent > 0 ? spread_tangent * spread_scale : 1;
-    return greatest * (kind == Kind::area ? area * focus : 1) / std::numbers::pi_v<float>;
+    return greatest(emission) * (kind == Kind::area ? area * focus : 1) / std::numbers::pi_v<float>;
 }
 
 float ReadyLight::extent() const {

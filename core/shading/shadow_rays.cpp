@@ -140,7 +140,7 @@ uint64_t filter_shadows(const Snapshot& snapshot, const Points& points, const Li
         for (int at = 0; at < hit_count; ++at) {
             const int i = open[at];
             const Vec3 left = visibility.get(i) * passing(snapshot, hits, shadow.coefficients, at, transparent);
-            const bool goes_on = std::max({left.x, left.y, left.z}) >= 1e-4f;
+            const bool goes_on = greatest(left) >= 1e-4f;
             visibility.set(i, goes_on ? left : Vec3(0, 0, 0));
             reached[i] += 2 * hits.offset[at];
             if (goes_on) open[count++] = i;

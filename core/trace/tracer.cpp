@@ -264,8 +264,8 @@ void Tracer::pass_hole(int i, const PathRay& ray, TreeWorkspace& w) const {
         behind.node = static_cast<int32_t>(w.tree->size());
         w.tree->push_back(node);
     }
-    const float greatest = std::max({behind.weight.x, behind.weight.y, behind.weight.z});
-    if (greatest > 0 && (one_way() || greatest >= job.settings.trace.least_weight)) w.stack.push_back(behind);
+    const float weight = greatest(behind.weight);
+    if (weight > 0 && (one_way() || weight >= job.settings.trace.least_weight)) w.stack.push_back(behind);
 }
 
 void Tracer::secondary(TreeWorkspace& w) const {
@@ -285,9 +285,9 @@ void Tracer::secondary(TreeWorkspace& w) const {
             for (int i = 0; i < count; ++i) {
                 const Vec3 d = w.rays[i].direction;
                 const float width = w.rays[i].width + w.rays[i].spread * w.points.depth[i];
-                const Vec3 across = (std::abs(d.z) < 0.9f ? Vec3(0, 0, 1) : Vec3(1, 0, 0)).cross(d).normalized();
-                w.steps[0].set(i, across * width);
-                w.steps[1].set(i, d.cross(across) * width);
+                const Vec3 s = perpendicular_to(d);
+                w.steps[0].set(i, s * width);
+                w.steps[1].set(i, d.cross(s) * width);
             }
             make_footprints({w.secondary.direction, false, Vec3(0, 0, 0), Vec3(0, 0, 0), w.steps}, w.points);
         }

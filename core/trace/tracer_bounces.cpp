@@ -21,13 +21,9 @@ constexpr float kGreatestWeight = 1e18f;            // of surfaces that give mor
 constexpr uint32_t kSureWays = 3;                   // a path is as long as this, unless it counts for nothing
 constexpr float kPi = std::numbers::pi_v<float>;
 
-float greatest(const Vec3& v) {
-    return std::max({v.x, v.y, v.z});
-}
-
 // The direction at the given angle about an axis, turned around it by a share of the circle.
 Vec3 around(const Vec3& axis, float cosine, float turn) {
-    const Vec3 s = (std::abs(axis.z) < 0.9f ? Vec3(0, 0, 1) : Vec3(1, 0, 0)).cross(axis).normalized();
+    const Vec3 s = perpendicular_to(axis);
     const float sine = std::sqrt(std::max(1 - cosine * cosine, 0.0f)), angle = 2 * kPi * turn;
     return (axis * cosine + s * (sine * std::cos(angle)) + axis.cross(s) * (sine * std::sin(angle))).normalized();
 }
