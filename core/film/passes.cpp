@@ -7,9 +7,6 @@
 namespace trp {
 namespace {
 
-constexpr char kRayMethods[] = "ray_casting ray_tracing path_tracing";
-constexpr char kBouncingMethods[] = "ray_tracing path_tracing";
-
 bool gives(const std::string& method, const Pass& pass) {
     const std::string names = fmt::format(" {} ", pass.methods);
     return names == " * " || names.find(fmt::format(" {} ", method)) != std::string::npos;
@@ -37,8 +34,8 @@ const Pass kPasses[kPassCount] = {
     {"SpecularDirect", "RGB", "The part that is the highlights of lights, K_S, in W/(m² sr)", kRayMethods, true},
     {"DiffuseIndirect", "RGB", "The part that other surfaces give those that are seen, by K_D, in W/(m² sr)",
      "path_tracing", true},
-    {"Reflection", "RGB", "The part that is seen in mirrors and by gloss, in W/(m² sr)", kBouncingMethods, true},
-    {"Transmission", "RGB", "The part that is seen through surfaces, by K_T, in W/(m² sr)", kBouncingMethods, true},
+    {"Reflection", "RGB", "The part that is seen in mirrors and by gloss, in W/(m² sr)", kTreeMethods, true},
+    {"Transmission", "RGB", "The part that is seen through surfaces, by K_T, in W/(m² sr)", kTreeMethods, true},
     {"Environment", "RGB", "The part that is the world, seen by the camera, in W/(m² sr)", kRayMethods, true},
     {"LightGroup1", "RGB", "The part of the picture that lamps of light group 1 give, in W/(m² sr)", kRayMethods, true},
     {"LightGroup2", "RGB", "The part of the picture that lamps of light group 2 give, in W/(m² sr)", kRayMethods, true},
@@ -50,7 +47,7 @@ const Pass kPasses[kPassCount] = {
     {"LightGroup8", "RGB", "The part of the picture that lamps of light group 8 give, in W/(m² sr)", kRayMethods, true},
     {"RayCount", "X", "Rays traced for the pixel, without those of shadows", kRayMethods, false},
     {"TreeDepth", "X", "The greatest number of reflections and transmissions in a row along the pixel's rays",
-     kBouncingMethods, false},
+     kTreeMethods, false},
 };
 
 uint32_t channel_count(PassId pass) {

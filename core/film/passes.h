@@ -8,8 +8,11 @@
 
 namespace trp {
 
-// The methods that see surfaces, for the tables of passes and settings; the others draw edges.
+// Methods, for the tables of passes and settings: that see surfaces (the others draw edges); of those, that trace rays;
+// and of those, that follow reflections.
 inline constexpr char kSurfaceMethods[] = "visible_surface flat gouraud phong ray_casting ray_tracing path_tracing";
+inline constexpr char kRayMethods[] = "ray_casting ray_tracing path_tracing";
+inline constexpr char kTreeMethods[] = "ray_tracing path_tracing";
 
 enum PassId : uint32_t {
     kCombined,

@@ -21,8 +21,6 @@ const char* const kLineColors[] = {"line", "object", "material", nullptr};
 const char* const kHidden[] = {"none", "faint", "dashed", nullptr};
 
 constexpr const char kLineMethods[] = "wireframe hidden_line";
-constexpr const char kRayMethods[] = "ray_casting ray_tracing path_tracing";
-constexpr const char kTreeMethods[] = "ray_tracing path_tracing";
 
 Vec3 color_of(const double* v) {
     return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
