@@ -13,12 +13,13 @@ constexpr float kRho = 0.6f;
 class OverFloor {
   public:
     OverFloor() { scene.object(floor_square(50), scene.diffuse(kRho, kRho, kRho)); }
-    // Radiance at a point of the floor, by many samples of a tiny picture.
-    double radiance(Vec at, int samples = 4096, Settings more = {}) {
+    // Radiance at a point of the floor, by the 256 pixels of a tiny picture: 16 samples of each are the 4096 random
+    // numbers that as many samples of one pixel would get, and cost no more than 16 of those.
+    double radiance(Vec at, int samples = 16, Settings more = {}) {
         scene.camera_above(1e-4f, at);
         more.emplace_back("samples", std::to_string(samples));
         more.emplace_back("film.filter_width", "0");
-        return mean(render(scene, 1, 1, more));
+        return mean(render(scene, 16, 16, more));
     }
     Scene scene;
 };
@@ -113,7 +114,7 @@ TEST(Lights, SpreadKeepsThePowerOfAnAreaLight) {
             d.angle = spread;
         });
         scene.camera_above(40);
-        return mean(render(scene, 400, 400, {{"samples", "16"}})) * 1600 * kPi;
+        return mean(render(scene, 200, 200, {{"samples", "16"}})) * 1600 * kPi;
     };
     const double all = 1000 * kPi * 0.05 * 0.05;
     EXPECT_NEAR(flux(static_cast<float>(kPi)) / all, 1, 0.01);
@@ -235,7 +236,7 @@ TEST(Shadows, RectangleLightHalfCovered) {
     f.scene.light(TRP_LIGHT_AREA, {5, 5, 5}, translation({0, 0, 1}));
     f.scene.object(quad({0, -9, 0.999f}, {9, -9, 0.999f}, {9, 9, 0.999f}, {0, 9, 0.999f}));
     f.scene.camera(look_at({-2, 0, 0.5f}, {0, 0, 0}), [](TrpCameraDesc& d) { d.field_of_view = 1e-4f; });
-    const double value = mean(render(f.scene, 1, 1, {{"samples", "4096"}}));
+    const double value = mean(render(f.scene, 16, 16, {{"samples", "16"}}));
     EXPECT_NEAR(value / (kRho * 5 * 0.2394564705 / 2), 1, 5e-3);
 }
 
@@ -316,11 +317,11 @@ TEST(Lights, NoneIsMissed) {
     }
     scene.commit();
     Render render(scene, 96, 64,
-                  {{"samples", "64"}, {"film.filter_width", "0"}, {"shadows", "off"}, {"shading.specular", "none"}},
+                  {{"samples", "32"}, {"film.filter_width", "0"}, {"shadows", "off"}, {"shading.specular", "none"}},
                   {"Position", "Normal", "Depth"});
     const Image image = render.run().read(), positions = render.read("Position"), normals = render.read("Normal"),
                 depth = render.read("Depth");
-    constexpr int kCells = 12;
+    constexpr int kCells = 8;
     for (uint32_t y = 0; y < 64; ++y)
         for (uint32_t x = 0; x < 96; ++x) {
             if (*depth.at(x, y) > 1e9f) continue;
@@ -390,14 +391,14 @@ TEST(Lights, NoiseIsFine) {
                 [](TrpLightDesc& d) { d.size[0] = d.size[1] = 3; });
     scene.camera(look_at({0, 0, 0.9f}, {0, 0, 0}, {0, 1, 0}), [](TrpCameraDesc& d) { d.field_of_view = 1.8f; });
     scene.commit();
-    constexpr uint32_t kSide = 128, kBlock = 8;
+    constexpr uint32_t kSide = 96, kBlock = 8;
     const auto picture = [&](const char* method, int samples, const char* seed) {
         return Render(scene, kSide, kSide,
                       {{"samples", std::to_string(samples)}, {"film.filter_width", "0"}, {"seed", seed}}, {}, method)
             .run()
             .read();
     };
-    const Image right = picture("ray_casting", 512, "7");
+    const Image right = picture("ray_casting", 128, "7");
     for (const char* method : {"ray_casting", "ray_tracing", "path_tracing"})
         for (const int samples : {1, 4, 16}) {
             const Image noisy = picture(method, samples, "0");
