@@ -41,13 +41,16 @@ TEST(PathTracing, AClosedRoomThatGlows) {
         d.diffuse = {{0.7f, 0.4f, 0}, TRP_NO_NODE};
         d.emission = {{1, 1, 1}, TRP_NO_NODE};
     });
-    scene.object(inwards(box({-1, -1, -1}, {2, 1, 1})), material);
-    scene.object(box({-0.5f, -0.2f, -1}, {0, 0.3f, 0}), material);
+    // Walls that met at an edge would give each other light without a bound, which no number of samples is enough for.
+    MeshData wall = inwards(sphere({0, 0, 0}, 2, 24)), ball = sphere({-0.6f, 0.3f, -0.4f}, 0.7f, 24);
+    for (MeshData* faceted : {&wall, &ball}) {
+        faceted->normals.clear();
+        scene.object(*faceted, material);
+    }
     // A lamp that gives next to nothing takes nothing either: lamps are light, and no bodies.
     scene.light(TRP_LIGHT_AREA, {1e-6f, 1e-6f, 1e-6f}, look_at({0.5f, 0, 0.7f}, {0.5f, 0, 0}, {0, 1, 0}));
-    scene.camera(look_at({1.5f, -0.8f, 0.5f}, {0, 0, -0.3f}));
-    // Light that walls give each other close to an edge makes for long tails: half a percent is left of them.
-    const Image image = path_traced(scene, 32, 32, {{"samples", "512"}});
+    scene.camera(look_at({1.2f, -0.8f, 0.5f}, {0, 0, -0.3f}));
+    const Image image = path_traced(scene, 16, 16, {{"samples", "128"}});
     EXPECT_NEAR(mean(image, 0), 1 / 0.3, 0.04);
     EXPECT_NEAR(mean(image, 1), 1 / 0.6, 0.015);
     EXPECT_NEAR(mean(image, 2), 1, 1e-6) << "black walls: only what is seen counts";
@@ -65,7 +68,7 @@ TEST(PathTracing, AFurnaceShowsNothing) {
     }));
     scene.world({1, 1, 1});
     scene.camera(look_at({0, -6, 2}, {0, 0, 0}));
-    const Image image = path_traced(scene, 48, 32, {{"samples", "512"}});
+    const Image image = path_traced(scene, 48, 32, {{"samples", "256"}});
     for (uint32_t c = 0; c < 3; ++c) EXPECT_NEAR(mean(image, c), 1, 3e-3);
     for (uint32_t y = 0; y < 32; y += 8)
         for (uint32_t x = 0; x < 48; x += 8) {
@@ -90,7 +93,7 @@ TEST(PathTracing, GlossScattersLikeTheHighlight) {
             }));
             scene.world({1, 1, 1});
             scene.camera_above(1);
-            const Image image = path_traced(scene, 16, 16, {{"samples", "256"}, {"shading.specular", specular}});
+            const Image image = path_traced(scene, 16, 16, {{"samples", "64"}, {"shading.specular", specular}});
             const double expected =
                 specular[0] == 'p' ? 2 / (n + 1.0) : 8 * (1 - std::pow(0.5, (n + 2) / 2.0)) / (n + 2);
             EXPECT_NEAR(mean(image, 0), 0.6 * expected, 0.01 * expected) << specular << " " << n;
@@ -122,7 +125,7 @@ TEST(PathTracing, IsRayTracingOfMirrorsAndGlass) {
     Scene scene;
     build_mirrors_and_glass(scene);
     scene.commit();
-    const Settings common = {{"samples", "128"},   {"film.filter", "box"},          {"film.filter_width", "1"},
+    const Settings common = {{"samples", "64"},    {"film.filter", "box"},          {"film.filter_width", "1"},
                              {"trace.depth", "4"}, {"trace.reflection_depth", "4"}, {"trace.transmission_depth", "4"}};
     const auto picture = [&](const char* method, const Settings& more) {
         return Render(scene, 48, 32, with(common, more), {}, method).run().read();
@@ -169,7 +172,7 @@ TEST(PathTracing, MirrorsThrowLight) {
     thrown.light(TRP_LIGHT_AREA, {5, 5, 5}, look_at({1.5f, 0, 3.5f}, {1.5f, 0, 0}, {0, 1, 0}), large);
     image_lamp.light(TRP_LIGHT_AREA, {5, 5, 5}, look_at({1.5f, 0, -3.5f}, {1.5f, 0, 0}, {0, 1, 0}), large);
     thrown.commit();
-    Render paths(thrown, 16, 16, {{"samples", "2048"}, {"trace.diffuse_depth", "1"}}, {"DiffuseIndirect"},
+    Render paths(thrown, 16, 16, {{"samples", "512"}, {"trace.diffuse_depth", "1"}}, {"DiffuseIndirect"},
                  "path_tracing");
     const Image a = paths.run().read("DiffuseIndirect");
     const Image b = path_traced(image_lamp, 16, 16, {{"samples", "256"}, {"trace.diffuse_depth", "0"}});
@@ -199,7 +202,7 @@ TEST(RoughMirrors, BlurByTheLobe) {
         const double share = 1 - std::pow(std::cos(half_angle), n + 1);
         for (const char* method : {"ray_tracing", "path_tracing"}) {
             const Image image =
-                Render(scene, 16, 16, {{"samples", "256"}, {"trace.rough", "on"}, {"shading.specular", "none"}}, {},
+                Render(scene, 16, 16, {{"samples", "64"}, {"trace.rough", "on"}, {"shading.specular", "none"}}, {},
                        method)
                     .run()
                     .read();
