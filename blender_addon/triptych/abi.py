@@ -312,6 +312,10 @@ class Statistics(c.Structure):
         ("shadow_seconds", f64),
         ("shading_seconds", f64),
         ("peak_memory_bytes", u64),
+        ("elements", u64),
+        ("links", u64),
+        ("iterations", u32),
+        ("residual", f64),
     ]
 
 

@@ -9,18 +9,15 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "film/picture_file.h"
+#include "radiosity/scene_hash.h"
 #include "raster/rasterizer.h"
 
-using namespace trp;
+namespace trp {
 
-namespace {
-
-TrpCallbacks callback_defaults() {
-    return {};
-}
-
-RenderEvents events_of(const TrpCallbacks& callbacks) {
+RenderEvents events_of(const TrpCallbacks* given) {
     RenderEvents events;
+    if (!given) return events;
+    const TrpCallbacks callbacks = read_struct(given, TrpCallbacks{}, "callbacks");
     if (callbacks.progress)
         events.progress = [=](const TrpProgress& p) { return callbacks.progress(callbacks.user, &p) != 0; };
     if (callbacks.tile) events.tile = [=](const TrpTile& t) { return callbacks.tile(callbacks.user, &t) != 0; };
@@ -28,28 +25,17 @@ RenderEvents events_of(const TrpCallbacks& callbacks) {
     return events;
 }
 
+}  // namespace trp
+
+using namespace trp;
+
+namespace {
+
 uint64_t peak_memory() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     return static_cast<uint64_t>(usage.ru_maxrss) * 1024;
 }
-
-// Marks the render as running for as long as it stands.
-struct Running {
-    explicit Running(TrpRender& render) : render(render) {
-        const std::lock_guard lock(render.state);
-        if (render.running) fail(TRP_ERROR_STATE, "the render is running");
-        render.cancelled = false;
-        render.running = true;
-    }
-    ~Running() {
-        const std::lock_guard lock(render.state);
-        render.running = false;
-    }
-    Running(const Running&) = delete;
-    Running& operator=(const Running&) = delete;
-    TrpRender& render;
-};
 
 // The film of a run, in place of that of the run before, which comes back if this one fails. Else it is kept, unless it
 // is large, for the next run: the system's fresh memory costs more than drawing a simple frame.
@@ -75,6 +61,29 @@ struct NewFilm {
     std::unique_ptr<Film> before;
     bool kept = false;
 };
+
+bool shows_radiosity(const TrpRender& render) {
+    return kMethods[render.method].run == radiosity_view;
+}
+
+// What a render of radiosity shows: the solution that it was given, or one that it finds now. Null for other methods,
+// and where it was cancelled.
+std::shared_ptr<const ShownSolution> solution_for(TrpRender& render, const RenderEvents& events, TrpStatistics& s) {
+    if (!shows_radiosity(render)) return nullptr;
+    if (render.radiosity) return render.radiosity->shown(render.settings.radiosity);
+    Radiosity radiosity(render.snapshot);
+    radiosity.settings = render.settings;
+    const bool whole = radiosity.advance(0, events, render.cancelled);
+    s.solve_seconds = radiosity.seconds();
+    s.gather_rays = radiosity.statistics().rays;
+    s.links = radiosity.statistics().links;
+    s.iterations = radiosity.statistics().steps;
+    s.residual = radiosity.statistics().residual;
+    if (!whole) return nullptr;
+    auto shown = radiosity.shown(render.settings.radiosity);
+    s.elements = shown->leaf_count();
+    return shown;
+}
 
 void check_idle(const TrpRender* render) {
     check_pointer(render, "render");
@@ -154,35 +163,52 @@ TrpStatus trp_render_add_pass(TrpRender* render, const char* name) {
 }
 
 TrpStatus trp_callbacks_init(TrpCallbacks* callbacks, size_t size) {
-    return init_struct(callbacks, size, callback_defaults());
+    return init_struct(callbacks, size, TrpCallbacks{});
 }
 
 TrpStatus trp_render_run(TrpRender* render, const TrpCallbacks* callbacks) {
     return guard([&] {
         check_pointer(render, "render");
-        const RenderEvents events =
-            callbacks ? events_of(read_struct(callbacks, callback_defaults(), "callbacks")) : RenderEvents{};
-        const Running running(*render);
+        const RenderEvents events = events_of(callbacks);
+        const Running running(*render, "render");
         NewFilm film(*render);
         RenderJob::Counts counts;
-        RenderJob job{render->snapshot, render->settings, render->film.get(), &render->cancelled, &counts};
+        TrpStatistics s{};
+        const auto solution = solution_for(*render, events, s);
+        RenderJob job{render->snapshot, render->settings, render->film.get(), &render->cancelled, &counts, solution};
         const auto start = Clock::now();
-        const bool whole = kMethods[render->method].run(job, events);
+        const bool whole = (solution || !shows_radiosity(*render)) && kMethods[render->method].run(job, events);
         film.kept = true;
-        TrpStatistics& s = render->statistics = {};
         s.threads = thread_count(render->settings.threads);
         s.render_seconds = seconds_since(start);
         s.primary_rays = counts.primary_rays;
         s.shadow_rays = counts.shadow_rays;
         s.reflection_rays = counts.reflection_rays;
         s.transmission_rays = counts.transmission_rays;
-        s.gather_rays = counts.diffuse_rays;
+        s.gather_rays += counts.diffuse_rays;
         s.primary_seconds = 1e-9 * static_cast<double>(counts.primary_time);
         s.shadow_seconds = 1e-9 * static_cast<double>(counts.shadow_time);
         s.shading_seconds = 1e-9 * static_cast<double>(counts.shading_time);
         s.triangles = render->snapshot->info.triangle_count;
         s.peak_memory_bytes = peak_memory();
+        render->statistics = s;
         return whole ? TRP_OK : TRP_CANCELLED;
+    });
+}
+
+TrpStatus trp_render_set_radiosity(TrpRender* render, TrpRadiosity* radiosity) {
+    return guard([&] {
+        check_idle(render);
+        check_pointer(radiosity, "radiosity");
+        const Running running(*radiosity, "radiosity solution");
+        if (!shows_radiosity(*render))
+            fail(TRP_ERROR_STATE, "{} shows no radiosity solution; radiosity does", kMethods[render->method].name);
+        if (!radiosity->data->has_elements()) fail(TRP_ERROR_STATE, "the radiosity solution has not been begun");
+        if (radiosity->data->snapshot() != render->snapshot &&
+            scene_hash(*radiosity->data->snapshot()) != scene_hash(*render->snapshot))
+            fail(TRP_ERROR_STATE, "the radiosity solution is that of another scene");
+        render->radiosity = radiosity->data;
+        return TRP_OK;
     });
 }
 
@@ -237,7 +263,7 @@ TrpStatus trp_render_pick_scan_line(const TrpRender* render, uint32_t x, uint32_
         std::atomic<bool> cancelled{false};
         RenderJob::Counts counts;
         const PickedScanLine picked =
-            pick_scan_line({render->snapshot, render->settings, &film, &cancelled, &counts},
+            pick_scan_line({render->snapshot, render->settings, &film, &cancelled, &counts, nullptr},
                            method == "gouraud" ? ScannedValue::radiance : ScannedValue::normal, x, y);
         TrpScanLine out{};
         if (picked.surface) {
@@ -271,7 +297,7 @@ TrpStatus trp_render_trace_tree(TrpRender* render, uint32_t x, uint32_t y, uint3
         Film film({render->window.width, render->window.height, x, y, 1, 1}, PassList());
         std::atomic<bool> cancelled{false};
         RenderJob::Counts counts;
-        render->tree = trace_ray_tree({render->snapshot, render->settings, &film, &cancelled, &counts}, x, y);
+        render->tree = trace_ray_tree({render->snapshot, render->settings, &film, &cancelled, &counts, nullptr}, x, y);
         *count = static_cast<uint32_t>(render->tree.size());
         return TRP_OK;
     });

@@ -1,6 +1,7 @@
 // Methods, settings, passes and node types describe themselves.
 #include "api/guard.h"
 #include "api/handles.h"
+#include "radiosity/view.h"
 #include "raster/line_drawing.h"
 #include "raster/rasterizer.h"
 #include "scene/nodes.h"
@@ -25,6 +26,9 @@ const MethodRow kMethods[] = {
     {"ray_tracing", "Ray Tracing",
      "Recursive ray tracing: mirror reflection and transparency, thin or by refraction, from every surface on",
      ray_tracing},
+    {"radiosity", "Radiosity",
+     "Diffuse light from surface to surface, found once for the whole scene and then seen from anywhere, without noise",
+     radiosity_view},
     {"path_tracing", "Path Tracing",
      "All light, by chance: paths with diffuse, glossy and mirror reflection and transmission, without bias; slow and "
      "right",

@@ -18,6 +18,8 @@ Command add_render_command(CLI::App& program);
 Command add_info_command(CLI::App& program);
 Command add_pick_command(CLI::App& program);
 Command add_ray_tree_command(CLI::App& program);
+Command add_radiosity_command(CLI::App& program);
+Command add_form_factors_command(CLI::App& program);
 Command add_methods_command(CLI::App& program);
 Command add_settings_command(CLI::App& program);
 Command add_passes_command(CLI::App& program);

@@ -13,8 +13,12 @@ struct DestroyScene {
 struct DestroyRender {
     void operator()(TrpRender* render) const { trp_render_destroy(render); }
 };
+struct DestroyRadiosity {
+    void operator()(TrpRadiosity* radiosity) const { trp_radiosity_destroy(radiosity); }
+};
 using SceneHandle = std::unique_ptr<TrpScene, DestroyScene>;
 using RenderHandle = std::unique_ptr<TrpRender, DestroyRender>;
+using RadiosityHandle = std::unique_ptr<TrpRadiosity, DestroyRadiosity>;
 
 inline SceneHandle make_scene() {
     TrpScene* scene = nullptr;

@@ -30,10 +30,10 @@ int run(int argc, char** argv) {
     program.set_version_flag("--version", version_text);
     program.require_subcommand(0, 1);  // none is answered below: CLI11 would not name a command it does not know
     program.fallthrough(false);
-    const std::vector<Command> commands = {add_render_command(program),  add_info_command(program),
-                                           add_pick_command(program),    add_ray_tree_command(program),
-                                           add_methods_command(program), add_settings_command(program),
-                                           add_passes_command(program)};
+    const std::vector<Command> commands = {
+        add_render_command(program),   add_info_command(program),      add_pick_command(program),
+        add_ray_tree_command(program), add_radiosity_command(program), add_form_factors_command(program),
+        add_methods_command(program),  add_settings_command(program),  add_passes_command(program)};
     try {
         program.parse(argc, argv);
     } catch (const CLI::Success& success) {
@@ -46,7 +46,10 @@ int run(int argc, char** argv) {
     for (const Command& command : commands) {
         if (command.app->parsed()) return command.run();
     }
-    return report("a command is required: render, info, pick, ray-tree, methods, settings or passes", wrong_usage);
+    return report(
+        "a command is required: render, info, pick, ray-tree, radiosity, form-factors, methods, "
+        "settings or passes",
+        wrong_usage);
 }
 
 }  // namespace

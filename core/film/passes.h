@@ -14,6 +14,10 @@ inline constexpr char kSurfaceMethods[] = "visible_surface flat gouraud phong ra
 inline constexpr char kRayMethods[] = "ray_casting ray_tracing path_tracing";
 inline constexpr char kTreeMethods[] = "ray_tracing path_tracing";
 
+// And those that see them by a solution found before.
+inline constexpr char kSeeingMethods[] =
+    "visible_surface flat gouraud phong ray_casting ray_tracing path_tracing radiosity";
+
 enum PassId : uint32_t {
     kCombined,
     kDepth,

@@ -20,6 +20,11 @@ const char* const kFilters[] = {"box", "gaussian", "blackman_harris", nullptr};
 const char* const kLineColors[] = {"line", "object", "material", nullptr};
 const char* const kHidden[] = {"none", "faint", "dashed", nullptr};
 
+const char* const kSolvers[] = {"hierarchical", "progressive", "matrix", nullptr};
+const char* const kFormFactors[] = {"analytic", "hemisphere", "hemicube", nullptr};
+const char* const kOrders[] = {"sorted", "unsorted", "gathering", nullptr};
+const char* const kRadiosityViews[] = {"shaded", "radiosity", "unshot", "false_color", nullptr};
+
 constexpr const char kLineMethods[] = "wireframe hidden_line";
 
 Vec3 color_of(const double* v) {
@@ -41,13 +46,13 @@ const SettingRow kSettings[] = {
      "Samples that every pixel gets before its noise is looked at; four times as many at edges of objects", "", "32", 8,
      65536, nullptr, kRayMethods, "",
      [](Settings& s, const double* v) { s.adaptive.least_samples = static_cast<uint32_t>(*v); }},
-    {TRP_TYPE_INT, "seed", "Seed", "Another seed gives other noise", "", "0", 0, 2147483647, nullptr, kSurfaceMethods,
+    {TRP_TYPE_INT, "seed", "Seed", "Another seed gives other noise", "", "0", 0, 2147483647, nullptr, kSeeingMethods,
      "", [](Settings& s, const double* v) { s.seed = static_cast<uint32_t>(*v); }},
     {TRP_TYPE_INT, "threads", "Threads", "Threads that work; 0 uses every core", "", "0", 0, 1024, nullptr, "*", "",
      [](Settings& s, const double* v) { s.threads = static_cast<uint32_t>(*v); }},
     {TRP_TYPE_BOOL, "shadows", "Shadows",
      "Lights are blocked by what stands in their way; the classic methods of the rasterizer have none unless asked", "",
-     "on", 0, 1, nullptr, kSurfaceMethods, "visible_surface=off flat=off gouraud=off phong=off",
+     "on", 0, 1, nullptr, kSeeingMethods, "visible_surface=off flat=off gouraud=off phong=off",
      [](Settings& s, const double* v) { s.illumination.shadows = *v != 0; }},
     {TRP_TYPE_ENUM, "shading.transparent_shadows", "Transparent shadows",
      "What transparent surfaces (K_T) do to shadows: block light like all others, let through the share and the colour "
@@ -76,7 +81,7 @@ const SettingRow kSettings[] = {
     {TRP_TYPE_ENUM, "shading.falloff", "Falloff",
      "How light fades with distance: each light's own way, not at all, with distance, or with its square; all agree at "
      "one metre",
-     "", "light", 0, 0, kFalloffs, kSurfaceMethods, "",
+     "", "light", 0, 0, kFalloffs, kSeeingMethods, "",
      [](Settings& s, const double* v) {
          constexpr int32_t kOf[] = {-1, TRP_FALLOFF_CONSTANT, TRP_FALLOFF_LINEAR, TRP_FALLOFF_PHYSICAL};
          s.illumination.falloff = kOf[static_cast<int>(*v)];
@@ -86,7 +91,7 @@ const SettingRow kSettings[] = {
      "scene "
      "that saves most of the time, and darkens each place by at most this much for each lamp left out. 0 leaves out "
      "none",
-     "W/(m² sr)", "0", 0, 1e6, nullptr, kSurfaceMethods, "",
+     "W/(m² sr)", "0", 0, 1e6, nullptr, kSeeingMethods, "",
      [](Settings& s, const double* v) { s.illumination.least_light = static_cast<float>(*v); }},
     {TRP_TYPE_ENUM, "film.filter", "Pixel filter", "How samples are weighed around a pixel", "", "blackman_harris", 0,
      0, kFilters, "*", "", [](Settings& s, const double* v) { s.filter = static_cast<PixelFilter::Kind>(*v); }},
@@ -100,7 +105,7 @@ const SettingRow kSettings[] = {
      nullptr, "*", "", [](Settings& s, const double* v) { s.tile_size = static_cast<uint32_t>(*v); }},
     {TRP_TYPE_INT, "raster.samples", "Edge samples",
      "Samples of each pixel for smooth edges; 1 sees what lies at the pixel's centre", "", "8", 1, 32, nullptr,
-     "visible_surface flat gouraud phong", "",
+     "visible_surface flat gouraud phong radiosity", "",
      [](Settings& s, const double* v) { s.raster_samples = static_cast<uint32_t>(*v); }},
     {TRP_TYPE_ENUM, "raster.interpolation", "Interpolation",
      "How colours or normals are interpolated over a face: right in perspective, triangle by triangle, or as the books "
@@ -130,6 +135,69 @@ const SettingRow kSettings[] = {
      "would have seen from the pixel. 0 traces all",
      "", "0.001", 0, 1, nullptr, "ray_tracing", "",
      [](Settings& s, const double* v) { s.trace.least_weight = static_cast<float>(*v); }},
+    {TRP_TYPE_ENUM, "radiosity.solver", "Solver",
+     "How radiosity is solved: hierarchical divides surfaces where light is uneven and links them as coarsely as the "
+     "tolerance allows; progressive shoots from the brightest patch first, a picture after each step; matrix solves "
+     "the "
+     "whole system, of some thousand elements",
+     "", "hierarchical", 0, 0, kSolvers, "radiosity", "",
+     [](Settings& s, const double* v) { s.radiosity.solver = static_cast<RadiositySolver>(*v); }},
+    {TRP_TYPE_ENUM, "radiosity.form_factors", "Form factors",
+     "How the matrix and progressive solvers find them: analytic, by contour integrals and rays between the elements; "
+     "hemisphere, by rays into it; hemicube, by drawing the scene on its five faces, which leaves mirrors out",
+     "", "analytic", 0, 0, kFormFactors, "radiosity", "",
+     [](Settings& s, const double* v) { s.radiosity.form_factors = static_cast<FormFactors>(*v); }},
+    {TRP_TYPE_FLOAT, "radiosity.element_size", "Element size",
+     "The greatest side of an element, and of the hierarchical solver the least. 0: one element to a face, and the "
+     "hierarchical solver divides as its tolerance asks",
+     "m", "0", 0, 1e6, nullptr, "radiosity", "",
+     [](Settings& s, const double* v) { s.radiosity.element_size = static_cast<float>(*v); }},
+    {TRP_TYPE_INT, "radiosity.patch_levels", "Patch levels",
+     "Progressive: patches, which shoot, are divided in four so many times into the elements that receive", "", "0", 0,
+     8, nullptr, "radiosity", "",
+     [](Settings& s, const double* v) { s.radiosity.patch_levels = static_cast<uint32_t>(*v); }},
+    {TRP_TYPE_INT, "radiosity.iterations", "Iterations",
+     "The greatest number of steps: shots, sweeps over the matrix, or refinements of the hierarchy. 0: until it is "
+     "solved",
+     "", "0", 0, 2147483647, nullptr, "radiosity", "",
+     [](Settings& s, const double* v) { s.radiosity.iterations = static_cast<uint32_t>(*v); }},
+    {TRP_TYPE_FLOAT, "radiosity.tolerance", "Tolerance",
+     "The error of radiosity that is allowed, as its root mean square over the area: hierarchical; or the mean that "
+     "may "
+     "stay unshot: progressive. 0: a hundredth of the mean radiosity, and a thousandth of it unshot",
+     "W/m²", "0", 0, 1e9, nullptr, "radiosity", "",
+     [](Settings& s, const double* v) { s.radiosity.tolerance = static_cast<float>(*v); }},
+    {TRP_TYPE_INT, "radiosity.rays", "Rays", "Rays from each element into its hemisphere", "", "1024", 1, 100000000,
+     nullptr, "radiosity", "", [](Settings& s, const double* v) { s.radiosity.rays = static_cast<uint32_t>(*v); }},
+    {TRP_TYPE_INT, "radiosity.hemicube_resolution", "Hemicube", "Pixels along a side of the hemicube, in steps of 32",
+     "pixels", "256", 32, 8192, nullptr, "radiosity", "",
+     [](Settings& s,
+        const double* v) { s.radiosity.hemicube_resolution = (static_cast<uint32_t>(*v) + 16) / 32 * 32; }},
+    {TRP_TYPE_ENUM, "radiosity.order", "Order",
+     "Progressive: shooting from the patch with the most unshot power; from one patch after the other; or gathering, "
+     "one element after the other",
+     "", "sorted", 0, 0, kOrders, "radiosity", "",
+     [](Settings& s, const double* v) { s.radiosity.order = static_cast<RadiositySettings::Order>(*v); }},
+    {TRP_TYPE_BOOL, "radiosity.ambient", "Ambient estimate",
+     "Progressive: power that is not yet shot is shown as if it came evenly from everywhere; the solution is not "
+     "changed by it",
+     "", "off", 0, 1, nullptr, "radiosity", "", [](Settings& s, const double* v) { s.radiosity.ambient = *v != 0; }},
+    {TRP_TYPE_INT, "radiosity.memory", "Matrix memory", "The greatest size of a matrix of form factors", "MiB", "2048",
+     1, 1048576, nullptr, "radiosity", "",
+     [](Settings& s, const double* v) { s.radiosity.memory = static_cast<uint32_t>(*v); }},
+    {TRP_TYPE_BOOL, "radiosity.smooth", "Smooth",
+     "Radiosity is interpolated between the corners of the elements; off: each element is shown in one colour", "",
+     "on", 0, 1, nullptr, "radiosity", "", [](Settings& s, const double* v) { s.radiosity.smooth = *v != 0; }},
+    {TRP_TYPE_BOOL, "radiosity.mesh", "Mesh", "The sides of the elements are drawn into the picture", "", "off", 0, 1,
+     nullptr, "radiosity", "", [](Settings& s, const double* v) { s.radiosity.mesh = *v != 0; }},
+    {TRP_TYPE_ENUM, "radiosity.view", "View",
+     "What is shown: the picture, with textures; the radiosity of the elements alone; what of it is not yet shot; or "
+     "irradiance in false colours, from blue over green and yellow to red",
+     "", "shaded", 0, 0, kRadiosityViews, "radiosity", "",
+     [](Settings& s, const double* v) { s.radiosity.view = static_cast<RadiositySettings::View>(*v); }},
+    {TRP_TYPE_FLOAT, "radiosity.view_scale", "Scale",
+     "The irradiance that is red in false colours (683 lux are 1 W/m²); 0: the greatest there is", "W/m²", "0", 0, 1e9,
+     nullptr, "radiosity", "", [](Settings& s, const double* v) { s.radiosity.view_scale = static_cast<float>(*v); }},
     {TRP_TYPE_FLOAT, "lines.width", "Width", "Width of the lines", "pixels", "1.5", 0.01, 64, nullptr, kLineMethods, "",
      [](Settings& s, const double* v) { s.lines.width = static_cast<float>(*v); }},
     {TRP_TYPE_ENUM, "lines.color_by", "Colour by",

@@ -34,6 +34,29 @@ struct AdaptiveSampling {
     uint32_t least_samples = 32;
 };
 
+// How radiosity is solved, and how the solution is shown.
+enum class RadiositySolver { hierarchical, progressive, matrix };
+enum class FormFactors { analytic, hemisphere, hemicube };
+struct RadiositySettings {
+    enum class Order { sorted, unsorted, gathering };
+    enum class View { shaded, radiosity, unshot, false_color };
+    RadiositySolver solver = RadiositySolver::hierarchical;
+    FormFactors form_factors = FormFactors::analytic;
+    float element_size = 0;     // metres; 0: one element to a face, or where it is divided on its own, as needed
+    uint32_t patch_levels = 0;  // a patch that shoots is divided so often into elements that receive
+    uint32_t iterations = 0;    // at most; 0: until it is solved
+    float tolerance = 0;        // W/m²; 0: a hundredth of the mean radiosity
+    uint32_t rays = 1024;       // from each element
+    uint32_t hemicube_resolution = 128;  // pixels; a multiple of 32
+    Order order = Order::sorted;
+    bool ambient = false;    // light that is not yet shot is shown as if it came from everywhere
+    uint32_t memory = 2048;  // MiB, at most, for a matrix
+    bool smooth = true;      // vertices are interpolated; else elements are shown flat
+    bool mesh = false;       // the elements' sides are drawn
+    View view = View::shaded;
+    float view_scale = 0;  // W/m², the top of the scale of colours; 0: the greatest
+};
+
 struct Settings {
     uint32_t samples = 16;
     uint32_t seed = 0;
@@ -56,6 +79,7 @@ struct Settings {
     LineSettings lines;
     TraceLimits trace;
     AdaptiveSampling adaptive;
+    RadiositySettings radiosity;
 };
 
 struct SettingRow {

@@ -17,6 +17,8 @@ struct RenderEvents {
     std::function<void(const std::string&)> log;
 };
 
+struct ShownSolution;  // radiosity/view.h
+
 // What a method reads, and where it counts. Counts are atomic: methods add once for a tile.
 struct RenderJob {
     std::shared_ptr<const Snapshot> snapshot;
@@ -31,6 +33,7 @@ struct RenderJob {
         std::atomic<uint64_t> primary_time{0}, shadow_time{0}, shading_time{0};
     };
     Counts* counts = nullptr;
+    std::shared_ptr<const ShownSolution> solution;  // of radiosity, for methods that show one
 };
 
 // A tile's blocks, in grid units, and the samples of one pass over the film.

@@ -20,7 +20,7 @@ namespace {
 
 constexpr uint32_t kTileSide = 256;  // pixels: a tile's buffers fit a core's cache, and few clusters lie in two tiles
 
-enum class Evaluation { ambient, polygon, vertex, pixel };
+enum class Evaluation { ambient, polygon, vertex, pixel, given };
 
 // What a thread evaluates with.
 struct Shading {
@@ -81,6 +81,7 @@ struct Rasterizer {
     bool wants_shadow_pass;
     DrawList list;
     SceneColors colors;  // of vertices, where the method evaluates there
+    SurfaceRadiance given;
     TileLists tiles;
     mutable tbb::enumerable_thread_specific<std::unique_ptr<Workspace>> workspaces;
 
@@ -125,8 +126,8 @@ Rasterizer::Rasterizer(const RenderJob& of, Evaluation where, const char* method
                         of.film->passes().has(kShadow)) {
     if (evaluation == Evaluation::ambient && illumination.ambient == Vec3(0, 0, 0))
         illumination.ambient = Vec3(1, 1, 1);
-    if (std::any_of(snapshot.lights.begin(), snapshot.lights.end(),
-                    [](const ReadyLight& light) { return light.is_sampled(); }))
+    if (evaluation != Evaluation::given && std::any_of(snapshot.lights.begin(), snapshot.lights.end(),
+                                                       [](const ReadyLight& light) { return light.is_sampled(); }))
         light_samples = of.settings.samples;
     // Each edge sample takes as many light samples as another.
     const auto edge_samples = static_cast<uint32_t>(pattern.size());
@@ -175,7 +176,7 @@ void Rasterizer::shade(const BlockSamples& samples, float footprint, const Light
         move_to_faces(snapshot, view.perspective ? &view.position : nullptr, w.points);
         locate(snapshot, NormalChoice::flat, w.points);
         take_face_normals(snapshot, w.points);
-    } else if (snapshot.needs_footprint) {
+    } else if (snapshot.needs_footprint || (evaluation == Evaluation::given && job.settings.radiosity.mesh)) {
         make_footprints(
             {w.directions, view.perspective, view.x * (view.step_x * footprint), view.y * (view.step_y * footprint)},
             w.points);
@@ -186,6 +187,7 @@ void Rasterizer::shade(const BlockSamples& samples, float footprint, const Light
     if (evaluation == Evaluation::vertex)
         return job.settings.scan_line ? scan_colors(lines, colors, w.points, w.radiance)
                                       : interpolate_colors(snapshot, colors, w.points, w.radiance);
+    if (evaluation == Evaluation::given) return given(w.points, w.coefficients, w.radiance);
     illuminate(samples.x / kBlockSide, samples.y / kBlockSide, lights, w.points, w);
 }
 
@@ -401,8 +403,10 @@ PickedScanLine Rasterizer::scan(uint32_t slot, uint32_t face, bool behind, doubl
     return out;
 }
 
-bool rasterize(RenderJob& job, const RenderEvents& events, Evaluation evaluation, const char* method) {
+bool rasterize(RenderJob& job, const RenderEvents& events, Evaluation evaluation, const char* method,
+               const SurfaceRadiance& given = {}) {
     Rasterizer rasterizer(job, evaluation, method);
+    rasterizer.given = given;
     const Window& window = job.film->window();
     if (events.log)
         events.log(fmt::format("{} x {} pixels, {} samples, {} lights", window.w, window.h,
@@ -425,6 +429,10 @@ bool gouraud_shading(RenderJob& job, const RenderEvents& events) {
 }
 bool phong_shading(RenderJob& job, const RenderEvents& events) {
     return rasterize(job, events, Evaluation::pixel, "phong");
+}
+
+bool draw_radiance(RenderJob& job, const RenderEvents& events, const char* method, const SurfaceRadiance& radiance) {
+    return rasterize(job, events, Evaluation::given, method, radiance);
 }
 
 PickedScanLine pick_scan_line(const RenderJob& job, ScannedValue value, uint32_t x, uint32_t y) {

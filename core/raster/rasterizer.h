@@ -13,6 +13,11 @@ bool flat_shading(RenderJob& job, const RenderEvents& events);     // once for e
 bool gouraud_shading(RenderJob& job, const RenderEvents& events);  // at each vertex
 bool phong_shading(RenderJob& job, const RenderEvents& events);    // at each pixel
 
+// What a solution that was found before gives surfaces: the radiance that leaves points, towards any eye, where
+// locate() has found them and their coefficients are known. From any thread.
+using SurfaceRadiance = std::function<void(const Points& points, const Coefficients& coefficients, LaneVec3& radiance)>;
+bool draw_radiance(RenderJob& job, const RenderEvents& events, const char* method, const SurfaceRadiance& radiance);
+
 // The scan line through the centre of a pixel, as Gouraud shading interpolates radiance on it, and Phong shading unit
 // normals; whatever interpolation the job's settings name. `surface` is null where nothing is seen.
 enum class ScannedValue { radiance, normal };

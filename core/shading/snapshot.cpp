@@ -247,6 +247,7 @@ void fill_info(const Scene& scene, Snapshot& snapshot) {
 }  // namespace
 
 Vec3 PlacedSurface::world_position(uint32_t vertex, float time) const {
+    if (!moves()) return world_position(vertex);
     const auto [before, after, share] = time_step_at(time, position_steps);
     const size_t vertices = mesh->vertex_count;
     const Vec3 from = positions[before * vertices + vertex], to = positions[after * vertices + vertex];

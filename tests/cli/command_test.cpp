@@ -262,6 +262,34 @@ TEST_F(Command, RayTreeShowsThePixel) {
                  "no folder");
 }
 
+TEST_F(Command, RadiosityLeavesItsSnapshots) {
+    const std::filesystem::path pictures = folder / "pictures";
+    const std::vector<std::string> solve = {
+        "radiosity", scene, "--set", "radiosity.solver=progressive", "--quiet", "--width", "32", "--height", "24"};
+    const auto with = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), solve.begin(), solve.end());
+        return run(more);
+    };
+    EXPECT_EQ(with({"--snapshots", "1,2", "--output", pictures.string()}).code, 0);
+    for (const char* name : {"iteration_0001.exr", "iteration_0001.png", "iteration_0002.exr", "iteration_0002.png"})
+        EXPECT_TRUE(std::filesystem::exists(pictures / name)) << name;
+    expect_error(with({"--snapshots", "1,,2", "--output", pictures.string()}), 2, "--snapshots: '1,,2'");
+    expect_error(with({"--snapshots", "0", "--output", pictures.string()}), 2, "--snapshots: the first step is 1");
+    expect_error(with({"--snapshots", "1"}), 2, "--snapshots: needs --output");
+}
+
+TEST_F(Command, FormFactorsAreAnArray) {
+    const std::string array = (folder / "rows.npy").string(), text = (folder / "rows.csv").string();
+    EXPECT_EQ(run({"form-factors", scene, "--output", array, "--quiet"}).code, 0);
+    EXPECT_EQ(text_of(array).substr(0, 6), "\x93NUMPY");
+    EXPECT_NE(text_of(array).find("'shape': (2, 2)"), std::string::npos);
+    EXPECT_EQ(run({"form-factors", scene, "--output", text, "--rows", "1", "--quiet"}).code, 0);
+    EXPECT_EQ(text_of(text), "0,0\n");  // two triangles of one plane
+    expect_error(run({"form-factors", scene, "--output", text, "--rows", "2", "--quiet"}), 2,
+                 "--rows: there is no element 2; there are 2");
+    expect_error(run({"form-factors", scene, "--output", "rows.txt"}), 2, "--output: 'rows.txt'");
+}
+
 TEST_F(Command, Tables) {
     for (const char* table : {"methods", "settings", "passes"}) {
         const Outcome outcome = run({table, "--json"});

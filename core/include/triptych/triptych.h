@@ -563,9 +563,87 @@ typedef struct TrpStatistics {
     /* Thread seconds within render_seconds, by stage; the rest is sampling, bookkeeping and film. */
     double primary_seconds, shadow_seconds, shading_seconds;
     uint64_t peak_memory_bytes; /* of the process */
+    /* Of the radiosity solution that the run found, within solve_seconds; see TrpRadiosityInfo. */
+    uint64_t elements, links;
+    uint32_t iterations;
+    double residual;
 } TrpStatistics;
 /* Of the last trp_render_run. */
 TRP_API TrpStatus trp_render_statistics(const TrpRender* render, TrpStatistics* statistics);
+
+/* ---------------------------------------------------------------------------------------------------------- radiosity */
+
+/* A radiosity solution: B = E + rho H, radiosity and irradiance in W/m², on elements that the scene's faces are cut
+ * into. It is advanced step by step, read at any time between, and shown by renders of the method "radiosity". */
+typedef struct TrpRadiosity TrpRadiosity;
+
+/* A solution of the scene's last commit, with nothing done yet. The caller destroys it. */
+TRP_API TrpStatus trp_radiosity_create(TrpScene* scene, TrpRadiosity** radiosity);
+/* Destroys it, which must not be running; null is allowed. Renders that show it keep what they need. */
+TRP_API void trp_radiosity_destroy(TrpRadiosity* radiosity);
+/* Sets a setting of the table, as trp_render_set. TRP_ERROR_STATE once the elements are made. */
+TRP_API TrpStatus trp_radiosity_set(TrpRadiosity* radiosity, const char* name, const char* value);
+
+/* Makes the elements, without solving: for form factors, and to look at them. */
+TRP_API TrpStatus trp_radiosity_prepare(TrpRadiosity* radiosity, const TrpCallbacks* callbacks);
+/* Advances by so many steps, or until it is solved: a step is a shot of the progressive solver, a sweep over the matrix,
+ * or a refinement of the hierarchy. TRP_CANCELLED leaves what was done by then. `callbacks` may be null; `tile` is not
+ * called. */
+TRP_API TrpStatus trp_radiosity_step(TrpRadiosity* radiosity, uint32_t count, const TrpCallbacks* callbacks);
+/* Steps until it is solved, or radiosity.iterations steps are done. */
+TRP_API TrpStatus trp_radiosity_solve(TrpRadiosity* radiosity, const TrpCallbacks* callbacks);
+/* Makes a running call return soon. Any thread, but not a signal handler. */
+TRP_API TrpStatus trp_radiosity_cancel(TrpRadiosity* radiosity);
+
+typedef struct TrpRadiosityInfo {
+    uint32_t struct_size;
+    uint32_t element_count, vertex_count; /* vertices: where elements meet; 0 until the elements are made */
+    uint32_t corner_count;                /* of all elements' polygons, as trp_radiosity_polygons gives them */
+    uint32_t iterations;                  /* steps done */
+    int32_t solved;
+    uint64_t links, rays;
+    double residual;   /* matrix: the greatest change of the last sweep over the greatest radiosity; progressive: the
+                          share of the power that is unshot; hierarchical: the estimated error, W/m² */
+    double area;       /* of all elements, m² */
+    double power[3];   /* that leaves them, W */
+    double unshot[3];  /* of the progressive solver, W */
+    double seconds;    /* wall time so far */
+} TrpRadiosityInfo;
+TRP_API TrpStatus trp_radiosity_info(TrpRadiosity* radiosity, TrpRadiosityInfo* info);
+/* Warnings of its making: a reflectance of 1 and above, a scene without surfaces. Strings as in trp_scene_warning. */
+TRP_API uint32_t trp_radiosity_warning_count(const TrpRadiosity* radiosity);
+TRP_API TrpStatus trp_radiosity_warning(const TrpRadiosity* radiosity, uint32_t index, TrpWarning* warning);
+
+/* Values of all elements, packed, mesh by mesh and face by face where the solver divides none; `float_count` is the size
+ * of the buffer in floats, which must be exact.
+ *   radiosity, irradiance, emission, unshot   3: W/m²; emission is that of surfaces, without the lamps' light
+ *   reflectance                               3
+ *   centre, normal                            3: world space
+ *   area                                      1: m²
+ *   instance, face                            1: the id of the object, and the face of its mesh
+ * and of all vertices: vertex_position, vertex_normal (world space), vertex_radiosity, vertex_irradiance, 3 each. */
+TRP_API TrpStatus trp_radiosity_read(TrpRadiosity* radiosity, const char* values, float* buffer, size_t float_count);
+/* The elements' polygons: element_count + 1 offsets into corner_count vertices, counter-clockwise about the normal. The
+ * corners of smaller neighbours are among them, so that a mesh of them has no cracks. */
+TRP_API TrpStatus trp_radiosity_polygons(TrpRadiosity* radiosity, uint32_t* offsets, size_t offset_count,
+                                         uint32_t* vertices, size_t vertex_count);
+/* Row `element` of the form factors by radiosity.form_factors: the share of what leaves the element that arrives at each
+ * other; `count` is the number of elements. Of colours that are tinted on the way, their mean. Needs elements. */
+TRP_API TrpStatus trp_radiosity_form_factors(TrpRadiosity* radiosity, uint32_t element, double* buffer, size_t count);
+
+typedef struct TrpRadiosityLink {
+    uint32_t struct_size;
+    uint32_t receiver, source;     /* elements; TRP_NO_ELEMENT: a group of them, or an element that was divided */
+    float factor[3];               /* irradiance at the receiver for a radiosity of 1 at the source */
+    float from[3], to[3];          /* the middles of source and receiver, world space */
+} TrpRadiosityLink;
+#define TRP_NO_ELEMENT 0xFFFFFFFFu
+/* Link `index`, from 0 to TrpRadiosityInfo.links, of the hierarchical solver. */
+TRP_API TrpStatus trp_radiosity_link(TrpRadiosity* radiosity, uint64_t index, TrpRadiosityLink* link);
+
+/* Has a render of the method "radiosity" show the solution as it is now, instead of finding one. TRP_ERROR_STATE where
+ * the render's scene has other surfaces, or for another method. */
+TRP_API TrpStatus trp_render_set_radiosity(TrpRender* render, TrpRadiosity* radiosity);
 
 #ifdef __cplusplus
 }

@@ -1,0 +1,99 @@
+// `triptych form-factors`: the matrix of a scene's form factors, or rows of it. SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+
+#include "commands.h"
+#include "radiosity_job.h"
+#include "report.h"
+
+namespace triptych::cli {
+namespace {
+
+struct Options : PictureJob {
+    std::string output, rows_text;
+};
+
+bool ends_in(const std::string& text, const char* end) {
+    const size_t length = std::strlen(end);
+    return text.size() >= length && text.compare(text.size() - length, length, end) == 0;
+}
+
+// A two-dimensional array of little-endian doubles as numpy.load reads it (NumPy Enhancement Proposal 1, version 1.0).
+std::string npy(const std::vector<double>& values, size_t rows, size_t columns) {
+    static_assert(std::endian::native == std::endian::little);
+    std::string header = fmt::format("{{'descr': '<f8', 'fortran_order': False, 'shape': ({}, {}), }}", rows, columns);
+    constexpr size_t kBefore = 10, kAlignment = 64;
+    header.append((kAlignment - (kBefore + header.size() + 1) % kAlignment) % kAlignment, ' ');
+    header += '\n';
+    std::string out("\x93NUMPY\x01\x00", 8);
+    out += static_cast<char>(header.size() & 0xFF);
+    out += static_cast<char>(header.size() >> 8);
+    out += header;
+    out.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double));
+    return out;
+}
+
+std::string csv(const std::vector<double>& values, size_t columns) {
+    std::string out;
+    for (size_t k = 0; k < values.size(); ++k)
+        out += fmt::format("{:.17g}{}", values[k], (k + 1) % columns ? ',' : '\n');
+    return out;
+}
+
+std::vector<uint32_t> chosen_rows(const std::string& text, uint32_t count) {
+    std::vector<uint32_t> rows;
+    if (text.empty()) {
+        for (uint32_t k = 0; k < count; ++k) rows.push_back(k);
+        return rows;
+    }
+    rows.resize(static_cast<size_t>(std::count(text.begin(), text.end(), ',')) + 1);
+    if (!parse_numbers(text, rows.data(), rows.size()))
+        throw UsageError(fmt::format("--rows: '{}' is not a list of numbers like 0,7,12", text));
+    for (const uint32_t row : rows)
+        if (row >= count) throw UsageError(fmt::format("--rows: there is no element {}; there are {}", row, count));
+    return rows;
+}
+
+int run(Options options) {
+    if (!ends_in(options.output, ".npy") && !ends_in(options.output, ".csv"))
+        throw UsageError(fmt::format("--output: '{}' does not end in .npy or .csv", options.output));
+    check_picture(options);
+    check_writable(options.output);
+    InterruptGuard guard;
+    LoadedPicture picture = load_picture(options);
+    const RenderHandle render = make_picture(options, picture);
+    const RadiosityHandle radiosity = make_radiosity(options, picture);
+    SolveCallbacks callbacks(guard, options.quiet);
+    callbacks.check_call(trp_radiosity_prepare(radiosity.get(), callbacks.get()));
+    print_radiosity_warnings(options, radiosity.get());
+    const uint32_t count = info_of(radiosity.get()).element_count;
+    const std::vector<uint32_t> rows = chosen_rows(options.rows_text, count);
+    std::vector<double> values(rows.size() * count);
+    for (size_t k = 0; k < rows.size(); ++k)
+        check(trp_radiosity_form_factors(radiosity.get(), rows[k], values.data() + k * count, count));
+    guard.begin_writing();
+    write_file(options.output,
+               ends_in(options.output, ".npy") ? npy(values, rows.size(), count) : csv(values, std::max(count, 1u)));
+    return 0;
+}
+
+}  // namespace
+
+Command add_form_factors_command(CLI::App& program) {
+    CLI::App* app = program.add_subcommand("form-factors", "Write the form factors between a scene's elements");
+    const auto options = std::make_shared<Options>();
+    options->method = "radiosity";
+    // Elements as other solvers than the hierarchical one have them, which begins with undivided faces.
+    options->set = {"radiosity.solver=matrix"};
+    add_picture_options(*app, *options);
+    app->add_option("--output", options->output, ".npy, doubles, or .csv: a row for each element")->required();
+    app->add_option("--rows", options->rows_text, "0,7,12,…: these rows alone");
+    return {app, [options] { return run(*options); }};
+}
+
+}  // namespace triptych::cli

@@ -1,0 +1,32 @@
+// What the commands about radiosity have in common. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "interrupt.h"
+#include "picture_job.h"
+#include "report.h"
+
+namespace triptych::cli {
+
+// A radiosity solution of the scene that make_picture() has committed, with the file's settings and the job's.
+RadiosityHandle make_radiosity(const PictureJob& job, const LoadedPicture& picture);
+
+// Callbacks that show progress on a terminal, and stop on an interrupt.
+class SolveCallbacks {
+  public:
+    SolveCallbacks(const InterruptGuard& guard, bool quiet);
+    const TrpCallbacks* get() const { return &callbacks_; }
+    // Throws an Error where the call failed or was interrupted; takes the progress line off the terminal.
+    void check_call(TrpStatus status);
+
+  private:
+    ProgressLine line_;
+    const InterruptGuard& guard_;
+    TrpCallbacks callbacks_{};
+};
+
+TrpRadiosityInfo info_of(TrpRadiosity* radiosity);
+
+// Says the warnings of its making.
+void print_radiosity_warnings(const PictureJob& job, TrpRadiosity* radiosity);
+
+}  // namespace triptych::cli

@@ -1,0 +1,65 @@
+#include "radiosity/clusters.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace trp {
+namespace {
+
+constexpr uint32_t kFewestClustered = 256;  // of fewer, each pair has its links
+
+// Halves by the middle of the longest side of the centres' box.
+NodeId make_cluster(const Elements& elements, uint32_t first, uint32_t count, ElementClusters& out) {
+    if (count == 1) return out.roots[first];
+    const auto begin = out.roots.begin() + first, end = begin + count;
+    Bounds box;
+    for (auto root = begin; root != end; ++root) box.extend(elements[*root].centre);
+    const Vec3 extent = box.max - box.min;
+    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+    const auto middle = begin + count / 2;
+    std::nth_element(begin, middle, end, [&](uint32_t a, uint32_t b) {
+        const float x = elements[a].centre[axis], y = elements[b].centre[axis];
+        return x != y ? x < y : a < b;
+    });
+    const auto number = static_cast<uint32_t>(out.clusters.size());
+    ElementCluster cluster;
+    cluster.first_root = first;
+    cluster.root_count = count;
+    cluster.centre = (box.min + box.max) / 2;
+    std::vector<Vec3d> corners;
+    for (auto root = begin; root != end; ++root) {
+        cluster.area += elements[*root].area;
+        elements.corners(*root, corners);
+        for (const Vec3d& p : corners) cluster.radius = std::max(cluster.radius, (Vec3(p) - cluster.centre).length());
+    }
+    out.clusters.push_back(cluster);
+    const NodeId a = make_cluster(elements, first, count / 2, out),
+                 b = make_cluster(elements, first + count / 2, count - count / 2, out);
+    out.clusters[number].children[0] = a;
+    out.clusters[number].children[1] = b;
+    return number | kClusterBit;
+}
+
+}  // namespace
+
+ElementClusters make_element_clusters(const Elements& elements) {
+    ElementClusters out;
+    if (elements.size() < kFewestClustered) return out;
+    out.roots.resize(elements.size());
+    std::iota(out.roots.begin(), out.roots.end(), 0u);
+    make_cluster(elements, 0, elements.size(), out);
+    out.areas.push_back(0);
+    for (const uint32_t root : out.roots) out.areas.push_back(out.areas.back() + elements[root].area);
+    return out;
+}
+
+uint32_t ElementClusters::root_at(const ElementCluster& cluster, float share) const {
+    const auto first = areas.begin() + cluster.first_root, last = first + cluster.root_count;
+    const float at = *first + share * (*last - *first);
+    const auto next = std::upper_bound(first, last, at);
+    const auto place = std::clamp<ptrdiff_t>(next - areas.begin() - 1, cluster.first_root,
+                                             static_cast<ptrdiff_t>(cluster.first_root + cluster.root_count) - 1);
+    return roots[static_cast<size_t>(place)];
+}
+
+}  // namespace trp

@@ -1,0 +1,39 @@
+// Groups of elements that lie close together, over the roots of all quad-trees: the upper part of the hierarchy (Smits,
+// Arvo and Greenberg, "A Clustering Algorithm for Radiosity in Complex Environments", 1994; Sillion, "A Unified
+// Hierarchical Algorithm for Global Illumination with Scattering Volumes and Object Clusters", 1995), so that surfaces
+// that hardly light each other need no links one by one.
+#pragma once
+
+#include <vector>
+
+#include "radiosity/elements.h"
+
+namespace trp {
+
+// A node of the hierarchy: an element, or a cluster where the highest bit is set.
+using NodeId = uint32_t;
+inline constexpr NodeId kClusterBit = 1u << 31;
+inline bool is_cluster(NodeId node) {
+    return (node & kClusterBit) != 0;
+}
+
+struct ElementCluster {
+    NodeId children[2] = {0, 0};
+    uint32_t first_root = 0, root_count = 0;  // in ElementClusters::roots
+    Vec3 centre{0, 0, 0};
+    float radius = 0, area = 0;
+};
+
+struct ElementClusters {
+    std::vector<ElementCluster> clusters;  // children after their parents; the first holds all
+    std::vector<uint32_t> roots;           // elements, cluster by cluster
+    std::vector<float> areas;              // of the roots before each, and of all
+
+    // The root that a share of a cluster's area, in [0, 1), falls into.
+    uint32_t root_at(const ElementCluster& cluster, float share) const;
+};
+
+// Of the elements that are there now; none where they are few.
+ElementClusters make_element_clusters(const Elements& elements);
+
+}  // namespace trp

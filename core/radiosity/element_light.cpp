@@ -1,0 +1,131 @@
+#include "radiosity/element_light.h"
+
+#include <algorithm>
+#include <memory>
+#include <numbers>
+
+#include "base/parallel.h"
+#include "film/pixel_random.h"
+#include "shading/shadow_rays.h"
+
+namespace trp {
+namespace {
+
+// One to a thread.
+struct Scratch {
+    Points points;
+    Coefficients coefficients;
+    LightScratch lights;
+    ProgramScratch program;
+    LaneVec3 irradiance;
+    alignas(64) uint32_t keys[kBatch], indices[kBatch];
+};
+
+// Place number k of an element, at the middle of a cell of its grid.
+void put(const LightingJob& job, uint32_t element, uint32_t k, int lane, Scratch& w) {
+    const Elements& elements = job.elements;
+    const Element& e = elements[element];
+    const Facet& facet = elements.facets()[e.facet];
+    const float side = static_cast<float>(job.side), u = (static_cast<float>(k % job.side) + 0.5f) / side,
+                v = (static_cast<float>(k / job.side) + 0.5f) / side;
+    float s = e.s + u * e.ds, t = e.t + v * e.dt;
+    if (facet.shape == Facet::Shape::triangle) {
+        const float root = std::sqrt(u);
+        s = e.s + root * (1 - v) * e.ds;
+        t = e.t + root * v * e.dt;
+    }
+    Points& points = w.points;
+    points.slot[lane] = facet.slot;
+    elements.locate(facet, s, t, points.triangle[lane], points.b1[lane], points.b2[lane]);
+    points.time[lane] = points.depth[lane] = 0;
+    points.to_viewer.set(lane, elements.normal(element));
+    w.keys[lane] = element * 0x9E3779B9u ^ job.seed * 0x85EBCA6Bu;
+    w.indices[lane] = k;
+}
+
+// Textures are filtered over the cell that a place stands for, taken as a part of the triangle's own coordinates.
+void set_footprints(const LightingJob& job, uint32_t element, int lane, Points& points) {
+    const float triangle = points.edge1.get(lane).cross(points.edge2.get(lane)).length() / 2;
+    const float step =
+        std::sqrt(job.elements[element].area / std::max(triangle, 1e-37f)) / static_cast<float>(job.side);
+    points.b1_dx[lane] = points.b2_dy[lane] = step;
+    points.b1_dy[lane] = points.b2_dx[lane] = 0;
+}
+
+void add_lamps(const LightingJob& job, Scratch& w) {
+    const Snapshot& snapshot = job.elements.snapshot();
+    const Illumination& illumination = job.illumination;
+    w.irradiance.clear();
+    for (size_t l = 0; l < snapshot.lights.size() && !*job.cancelled; ++l) {
+        const ReadyLight& light = snapshot.lights[l];
+        if (light.kind == ReadyLight::Kind::surface) continue;  // its elements shine themselves
+        LightScratch& lights = w.lights;
+        const bool shadows = illumination.shadows && light.cast_shadow;
+        lights.samples.packets =
+            reached_packets(light, illumination.falloff, illumination.least_light, shadows, w.points);
+        if (lights.samples.packets == 0) continue;
+        if (light.is_sampled())
+            random_pair_of(w.keys, w.indices, kFirstLightPair + static_cast<uint32_t>(l), lights.u, lights.v);
+        sample_light(snapshot, light, illumination.falloff, w.points, lights.u, lights.v, lights.samples, w.program);
+        if (shadows)
+            *job.rays += trace_shadows(snapshot, w.points, lights.samples, Coherence::incoherent,
+                                       TransparentShadows::transmission, lights.visibility, lights.shadow, w.program);
+        for (int i = 0; i < kBatch; ++i) {
+            if (w.points.slot[i] == kNoSlot || !lights.samples.reaches(i)) continue;
+            const float cosine = std::max(w.points.geometric_normal.get(i).dot(lights.samples.direction.get(i)), 0.0f);
+            const Vec3 seen = shadows ? lights.visibility.get(i) : Vec3(1, 1, 1);
+            const Vec3 light_there = lights.samples.light.get(i) * seen * (cosine * std::numbers::pi_v<float>);
+            w.irradiance.set(i, w.irradiance.get(i) + light_there);
+        }
+    }
+}
+
+// The means of an element's places, which stand in so many lanes from `first` on.
+ElementLight mean(const LightingJob& job, int first, const Scratch& w) {
+    const auto places = static_cast<int>(job.side * job.side);
+    ElementLight out;
+    float bright = 0, squares = 0;
+    for (int k = 0; k < places; ++k) {
+        const int i = first + k;
+        if (w.points.slot[i] == kNoSlot) continue;
+        const float alpha = w.coefficients.alpha[i], share = 1 / static_cast<float>(places);
+        const Vec3 reflectance = w.coefficients.diffuse.get(i) * alpha;
+        for (int c = 0; c < 3; ++c) {
+            out.clamped |= reflectance[c] > kGreatestReflectance;
+            out.reflectance[c] += share * std::clamp(reflectance[c], 0.0f, kGreatestReflectance);
+        }
+        out.emission += w.coefficients.emission.get(i) * (share * alpha * std::numbers::pi_v<float>);
+        const Vec3 irradiance = w.irradiance.get(i);
+        out.irradiance += irradiance * share;
+        bright += luminance(irradiance) * share;
+        squares += luminance(irradiance) * luminance(irradiance) * share;
+    }
+    out.unevenness = std::sqrt(std::max(squares - bright * bright, 0.0f));
+    return out;
+}
+
+}  // namespace
+
+void light_elements(const LightingJob& job, uint32_t first, std::span<ElementLight> out) {
+    const uint32_t places = job.side * job.side, in_batch = kBatch / places;
+    const size_t batches = (out.size() + in_batch - 1) / in_batch;
+    parallel_ranges(batches, 4, [&](size_t begin, size_t end) {
+        const auto w = std::make_unique<Scratch>();
+        for (size_t b = begin; b < end && !*job.cancelled; ++b) {
+            const size_t from = b * in_batch, count = std::min<size_t>(in_batch, out.size() - from);
+            std::fill_n(w->points.slot, kBatch, kNoSlot);
+            for (uint32_t lane = 0; lane < count * places; ++lane)
+                put(job, first + static_cast<uint32_t>(from) + lane / places, lane % places, static_cast<int>(lane),
+                    *w);
+            locate(job.elements.snapshot(), NormalChoice::flat, w->points);
+            for (uint32_t lane = 0; lane < count * places; ++lane)
+                set_footprints(job, first + static_cast<uint32_t>(from) + lane / places, static_cast<int>(lane),
+                               w->points);
+            evaluate(job.elements.snapshot(), w->points, w->coefficients, w->program);
+            add_lamps(job, *w);
+            for (size_t k = 0; k < count; ++k) out[from + k] = mean(job, static_cast<int>(k * places), *w);
+        }
+    });
+}
+
+}  // namespace trp

@@ -1,0 +1,35 @@
+// What elements are made of and what lamps give them: the material's colours averaged over each element, and the
+// irradiance of all lights that are no elements themselves (lamps, the sun and the world).
+#pragma once
+
+#include <atomic>
+#include <span>
+
+#include "radiosity/elements.h"
+#include "shading/lighting.h"
+
+namespace trp {
+
+struct ElementLight {
+    Vec3 emission{0, 0, 0};     // radiosity, W/m²: π times the radiance I_E
+    Vec3 reflectance{0, 0, 0};  // K_D, times alpha, below 1
+    Vec3 irradiance{0, 0, 0};   // of lamps, W/m²
+    float unevenness = 0;       // the standard deviation of the irradiance over the element, as luminance
+    bool clamped = false;       // a reflectance of 1 or more was met
+};
+
+struct LightingJob {
+    const Elements& elements;
+    Illumination illumination;
+    uint32_t seed = 0;
+    uint32_t side = 4;  // side² places of each element are looked at, at most 256
+    std::atomic<bool>* cancelled = nullptr;
+    std::atomic<uint64_t>* rays = nullptr;
+};
+
+inline constexpr float kGreatestReflectance = 0.999f;
+
+// Of the elements [first, first + out.size()). Runs in the current arena.
+void light_elements(const LightingJob& job, uint32_t first, std::span<ElementLight> out);
+
+}  // namespace trp

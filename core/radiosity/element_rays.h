@@ -1,0 +1,54 @@
+// Rays from surfaces to the elements that they meet: against the scene's own polygons, whose hits are mapped to
+// elements. What is not diffuse is not black: rays go on through holes and glass (straight, by K_T) and from mirrors,
+// with what is left of their weight.
+#pragma once
+
+#include <vector>
+
+#include "radiosity/elements.h"
+#include "shading/equation.h"
+
+namespace trp {
+
+// Rays to be traced, and where they met something.
+struct ElementRay {
+    Vec3 origin, direction;  // unit
+    uint32_t id = 0;         // the caller's
+    Vec3 weight{1, 1, 1};
+    uint32_t turns = 0;  // surfaces that it has passed
+};
+
+// `element`: kNoElement where the ray left the scene. A ray may meet several, or none of which it is known.
+struct ElementHit {
+    uint32_t id, element;
+    Vec3 weight;
+};
+
+// One to a thread.
+class ElementTracer {
+  public:
+    explicit ElementTracer(const Elements& elements) : elements_(elements) {}
+    // Appends to `hits`, in an order that depends on the rays alone; returns the number of rays traced. `rays` is used
+    // up.
+    uint64_t trace(std::vector<ElementRay>& rays, std::vector<ElementHit>& hits);
+
+  private:
+    void batch(const ElementRay* rays, int count, std::vector<ElementRay>& more, std::vector<ElementHit>& hits);
+    void go_on(const ElementRay* rays, int count, std::vector<ElementRay>& more, std::vector<ElementHit>& hits);
+
+    const Elements& elements_;
+    Points points_;
+    Coefficients coefficients_;
+    ProgramScratch program_;
+    std::vector<ElementRay> more_;
+};
+
+// How far from a surface rays start, so that they do not meet it (as Points::offset).
+inline float clearance(const Vec3& p) {
+    return 0x1p-18f * std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z), 1e-3f});
+}
+
+// The direction about a normal for numbers in [0, 1), with a density of cosine over π (Malley's method).
+Vec3 cosine_direction(const Vec3& normal, float u, float v);
+
+}  // namespace trp

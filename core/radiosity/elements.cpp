@@ -1,0 +1,397 @@
+#include "radiosity/elements.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "geometry/triangulate.h"
+
+namespace trp {
+namespace {
+
+constexpr float kCornerS[4] = {0, 1, 1, 0}, kCornerT[4] = {0, 0, 1, 1};
+constexpr uint32_t kMostElements = 1u << 28;
+
+// Whether four corners lie in a plane, to a thousandth of their extent, and bend one way.
+bool is_plane_and_convex(std::span<const Vec3> p, const Vec3& normal) {
+    float extent = 0, height = 0;
+    for (size_t k = 0; k < 4; ++k) {
+        const Vec3 a = p[(k + 1) % 4] - p[k], b = p[(k + 2) % 4] - p[(k + 1) % 4];
+        if (!(a.cross(b).dot(normal) > 1e-6f * a.length() * b.length())) return false;
+        extent = std::max(extent, a.length());
+        height = std::max(height, std::abs((p[k] - p[0]).dot(normal)));
+    }
+    return height <= 1e-3f * extent;
+}
+
+// Coordinates of the cells that a division makes of one.
+std::array<Element, 4> quarters(const Element& e, Facet::Shape shape) {
+    const float ds = e.ds / 2, dt = e.dt / 2;
+    std::array<Element, 4> out;
+    for (Element& child : out) {
+        child.facet = e.facet;
+        child.side = e.side;
+        child.ds = ds;
+        child.dt = dt;
+    }
+    const bool quad = shape == Facet::Shape::quad;
+    const float at[4][2] = {{0, 0}, {1, 0}, {0, 1}, {1, 1}};
+    for (int k = 0; k < 4; ++k) out[k].s = e.s + at[k][0] * ds, out[k].t = e.t + at[k][1] * dt;
+    if (!quad) out[3].ds = -ds, out[3].dt = -dt;  // the one in the middle
+    return out;
+}
+
+}  // namespace
+
+Elements::Elements(std::shared_ptr<const Snapshot> snapshot, float size, bool divisible)
+    : snapshot_(std::move(snapshot)), size_(size), divisible_(divisible || size > 0) {
+    triangles_.resize(snapshot_->surfaces.size());
+    for (uint32_t slot = 0; slot < triangles_.size(); ++slot) {
+        const PlacedSurface& surface = snapshot_->surfaces[slot];
+        if (!surface.mesh) continue;
+        const uint32_t count = surface.surface->triangle_count();
+        triangles_[slot].resize(count);
+        for (uint32_t first = 0, end; first < count; first = end) {
+            const uint32_t face = surface.face(first);
+            for (end = first + 1; end < count && surface.face(end) == face;) ++end;
+            add_face(slot, face, first, end - first);
+        }
+    }
+}
+
+void Elements::add_face(uint32_t slot, uint32_t face, uint32_t first_triangle, uint32_t triangle_count) {
+    const PlacedSurface& surface = snapshot_->surfaces[slot];
+    const Mesh& mesh = *surface.mesh;
+    const bool mirrored = surface.normal_sign < 0;
+    Facet facet;
+    facet.slot = slot;
+    facet.face = face;
+    facet.triangle = first_triangle;
+    facet.material = surface.face_material(face);
+    std::vector<uint32_t> loop;
+    mesh.distinct_corners(face, loop);
+    if (mirrored) std::reverse(loop.begin(), loop.end());
+    std::vector<Vec3> polygon;
+    for (const uint32_t c : loop) polygon.push_back(surface.world_position(mesh.corner_vertices[c]));
+
+    const auto map = [&](uint32_t triangle) {
+        TriangleOf& of = triangles_[slot][triangle];
+        of.facet = static_cast<uint32_t>(facets_.size());
+        for (int k = 0; k < 3; ++k) {
+            const auto at = std::find(loop.begin(), loop.end(), surface.corner(triangle, k));
+            of.corners[k] = static_cast<uint8_t>(std::min<ptrdiff_t>(at - loop.begin(), 3));
+        }
+    };
+    const Vec3d area2 = polygon.size() > 2 ? newell(polygon) : Vec3d(0, 0, 0);
+    if (area2 == Vec3d(0, 0, 0)) return;
+    const Vec3 normal(area2.normalized());
+    if (triangle_count == 1 && polygon.size() == 3) {
+        map(first_triangle);
+        return add_facet(facet, polygon);
+    }
+    if (polygon.size() == 4 && is_plane_and_convex(polygon, normal)) {
+        facet.shape = Facet::Shape::quad;
+        for (uint32_t t = 0; t < triangle_count; ++t) map(first_triangle + t);
+        return add_facet(facet, polygon);
+    }
+    if (!divisible_) {
+        facet.shape = Facet::Shape::polygon;
+        for (uint32_t t = 0; t < triangle_count; ++t) map(first_triangle + t);
+        return add_facet(facet, polygon);
+    }
+    for (uint32_t t = first_triangle; t < first_triangle + triangle_count; ++t) {
+        Vec3 p[3];
+        for (int k = 0; k < 3; ++k) p[k] = surface.world_position(surface.vertices[3 * size_t{t} + k]);
+        if (mirrored) std::swap(p[1], p[2]);
+        if ((p[1] - p[0]).cross(p[2] - p[0]) == Vec3(0, 0, 0)) continue;
+        TriangleOf& of = triangles_[slot][t];
+        of.facet = static_cast<uint32_t>(facets_.size());
+        if (mirrored) of.corners[1] = 2, of.corners[2] = 1;
+        facet.triangle = t;
+        add_facet(facet, p);
+    }
+}
+
+void Elements::add_facet(Facet facet, std::span<const Vec3> corners) {
+    facet.first_corner = static_cast<uint32_t>(corners_.size());
+    facet.corner_count = static_cast<uint32_t>(corners.size());
+    corners_.insert(corners_.end(), corners.begin(), corners.end());
+    const Vec3d area2 = newell(corners);
+    facet.area = static_cast<float>(area2.length() / 2);
+    facet.normal = Vec3(area2.normalized());
+    if (facet.shape == Facet::Shape::quad)
+        facet.skewed = (corners[0] + corners[2] - corners[1] - corners[3]).length() >
+                       1e-5f * ((corners[1] - corners[0]).length() + (corners[2] - corners[1]).length());
+    set_grid(facet);
+    facets_.push_back(facet);
+}
+
+// As few roots as keep their sides below the size, or where nothing is said, one; where they are to be divided, sides
+// that differ by less than half.
+void Elements::set_grid(Facet& facet) const {
+    if (facet.shape == Facet::Shape::polygon) return;
+    const Vec3* p = &corners_[facet.first_corner];
+    const auto steps = [&](float length) {
+        return static_cast<uint32_t>(std::clamp(std::ceil(length / size_ * (1 - 1e-5f)), 1.0f, 32768.0f));
+    };
+    const float a = (p[1] - p[0]).length(), b = (p[2] - p[1]).length();
+    if (facet.shape == Facet::Shape::triangle) {
+        if (size_ > 0) facet.across = facet.up = steps(std::max({a, b, (p[0] - p[2]).length()}));
+        return;
+    }
+    const float width = std::max(a, (p[3] - p[2]).length()), height = std::max(b, (p[0] - p[3]).length());
+    if (size_ > 0) {
+        facet.across = steps(width);
+        facet.up = steps(height);
+    } else if (divisible_ && width > 0 && height > 0) {
+        facet.across = static_cast<uint32_t>(std::clamp(std::round(width / height), 1.0f, 256.0f));
+        facet.up = static_cast<uint32_t>(std::clamp(std::round(height / width), 1.0f, 256.0f));
+    }
+}
+
+// Root `number` of a facet's grid, row by row; in a triangle's row an upright cell and one on its head take turns.
+Element Elements::cell(const Facet& facet, uint32_t number) const {
+    Element e;
+    if (facet.shape == Facet::Shape::polygon) return e;
+    e.ds = 1 / static_cast<float>(facet.across);
+    e.dt = 1 / static_cast<float>(facet.up);
+    const auto at = [](uint32_t k, uint32_t count) { return static_cast<float>(k) / static_cast<float>(count); };
+    if (facet.shape == Facet::Shape::quad) {
+        e.s = at(number % facet.across, facet.across);
+        e.t = at(number / facet.across, facet.up);
+        return e;
+    }
+    // Row r holds 2 (n − r) − 1 cells: n² − (n − r)² lie before it.
+    const uint32_t n = facet.across;
+    uint32_t row = 0, place = number;
+    while (place >= 2 * (n - row) - 1) place -= 2 * (n - row) - 1, ++row;
+    const bool turned = place % 2;
+    e.s = at(place / 2 + turned, n);
+    e.t = at(row + turned, n);
+    if (turned) e.ds = -e.ds, e.dt = -e.dt;
+    return e;
+}
+
+void Elements::add_side(uint32_t number, int side) {
+    Facet& facet = facets_[number];
+    const uint64_t count = uint64_t{facet.across} * facet.up;
+    if (elements_.size() + count > kMostElements)
+        fail(TRP_ERROR_MEMORY, "elements of {} m would be more than {}: choose a larger radiosity.element_size", size_,
+             kMostElements);
+    facet.roots[side] = size();
+    for (uint32_t k = 0; k < count; ++k) {
+        Element e = cell(facet, k);
+        e.facet = number;
+        e.side = static_cast<uint8_t>(side);
+        finish(e);
+        area_ += static_cast<double>(e.area);
+        elements_.push_back(e);
+    }
+}
+
+Elements Elements::whole_facets() const {
+    Elements out = *this;
+    out.elements_.clear();
+    out.area_ = 0;
+    for (uint32_t facet = 0; facet < facets_.size(); ++facet) {
+        out.facets_[facet].across = out.facets_[facet].up = 1;
+        for (int side = 0; side < 2; ++side) out.add_side(facet, side);
+    }
+    return out;
+}
+
+void Elements::finish(Element& e) const {
+    const Facet& facet = facets_[e.facet];
+    if (facet.shape == Facet::Shape::polygon) {
+        e.area = facet.area;
+        const Vec3* p = &corners_[facet.first_corner];
+        for (uint32_t k = 0; k < facet.corner_count; ++k) e.centre += p[k] / static_cast<float>(facet.corner_count);
+        return;
+    }
+    if (facet.shape == Facet::Shape::triangle) {
+        e.area = facet.area * std::abs(e.ds * e.dt);
+        e.centre = point(facet, e.s + e.ds / 3, e.t + e.dt / 3);
+        return;
+    }
+    e.centre = point(facet, e.s + e.ds / 2, e.t + e.dt / 2);
+    e.area = facet.area * e.ds * e.dt;
+    if (!facet.skewed) return;
+    const Vec3 a = point(facet, e.s + e.ds, e.t + e.dt) - point(facet, e.s, e.t),
+               b = point(facet, e.s, e.t + e.dt) - point(facet, e.s + e.ds, e.t);
+    e.area = a.cross(b).length() / 2;
+}
+
+void Elements::divide(uint32_t number) {
+    if (elements_.size() + 4 > kMostElements)
+        fail(TRP_ERROR_MEMORY, "the elements would be more than {}", kMostElements);
+    elements_[number].first_child = size();
+    for (Element child : quarters(elements_[number], facet_of(number).shape)) {
+        finish(child);
+        elements_.push_back(child);
+    }
+}
+
+void Elements::merge(uint32_t size) {
+    elements_.resize(size);
+    for (Element& e : elements_)
+        if (!e.leaf() && e.first_child >= size) e.first_child = kNoElement;
+}
+
+Vec3 Elements::point(const Facet& facet, float s, float t) const {
+    const Vec3* p = &corners_[facet.first_corner];
+    if (facet.shape == Facet::Shape::triangle) return p[0] + (p[1] - p[0]) * s + (p[2] - p[0]) * t;
+    return (p[0] * (1 - s) + p[1] * s) * (1 - t) + (p[3] * (1 - s) + p[2] * s) * t;
+}
+
+Vec3 Elements::point_in(uint32_t element, float u, float v) const {
+    const Element& e = elements_[element];
+    const Facet& facet = facets_[e.facet];
+    if (facet.shape == Facet::Shape::quad) return point(facet, e.s + u * e.ds, e.t + v * e.dt);
+    if (facet.shape == Facet::Shape::triangle) {
+        const float root = std::sqrt(u);
+        return point(facet, e.s + root * (1 - v) * e.ds, e.t + root * v * e.dt);
+    }
+    uint32_t triangle;
+    float b1, b2;
+    locate(facet, u, v, triangle, b1, b2);
+    const PlacedSurface& surface = snapshot_->surfaces[facet.slot];
+    Vec3 p[3];
+    for (int k = 0; k < 3; ++k) p[k] = surface.world_position(surface.vertices[3 * size_t{triangle} + k]);
+    return p[0] + (p[1] - p[0]) * b1 + (p[2] - p[0]) * b2;
+}
+
+// Which triangle of a polygon a share of its area falls into; the share becomes that of the triangle.
+uint32_t Elements::triangle_by_area(const Facet& facet, float& share) const {
+    const PlacedSurface& surface = snapshot_->surfaces[facet.slot];
+    const auto area = [&](uint32_t t) {
+        const uint32_t* v = surface.vertices + 3 * size_t{facet.triangle + t};
+        const Vec3 p = surface.world_position(v[0]);
+        return (surface.world_position(v[1]) - p).cross(surface.world_position(v[2]) - p).length() / 2;
+    };
+    const uint32_t count = facet.corner_count - 2;
+    float left = 0;
+    for (uint32_t t = 0; t < count; ++t) left += area(t);
+    left *= share;
+    uint32_t t = 0;
+    for (; t + 1 < count && left >= area(t); ++t) left -= area(t);
+    share = std::clamp(left / std::max(area(t), 1e-37f), 0.0f, 1.0f);
+    return t;
+}
+
+void Elements::corners(uint32_t element, std::vector<Vec3d>& out) const {
+    out.clear();
+    const Element& e = elements_[element];
+    const Facet& facet = facets_[e.facet];
+    if (facet.shape == Facet::Shape::polygon) {
+        for (uint32_t k = 0; k < facet.corner_count; ++k) out.emplace_back(corners_[facet.first_corner + k]);
+    } else {
+        const int count = facet.shape == Facet::Shape::quad ? 4 : 3;
+        for (int k = 0; k < count; ++k) {
+            const float ks = count == 4 ? kCornerS[k] : k == 1, kt = count == 4 ? kCornerT[k] : k == 2;
+            out.emplace_back(point(facet, e.s + ks * e.ds, e.t + kt * e.dt));
+        }
+    }
+    if (e.side) std::reverse(out.begin(), out.end());
+}
+
+float Elements::radius(uint32_t element) const {
+    const Element& e = elements_[element];
+    const Facet& facet = facets_[e.facet];
+    float radius2 = 0;
+    if (facet.shape == Facet::Shape::polygon) {
+        for (uint32_t k = 0; k < facet.corner_count; ++k)
+            radius2 = std::max(radius2, (corners_[facet.first_corner + k] - e.centre).length2());
+        return std::sqrt(radius2);
+    }
+    for (int k = 0; k < (facet.shape == Facet::Shape::quad ? 4 : 3); ++k) {
+        const bool quad = facet.shape == Facet::Shape::quad;
+        const float ks = quad ? kCornerS[k] : k == 1, kt = quad ? kCornerT[k] : k == 2;
+        radius2 = std::max(radius2, (point(facet, e.s + ks * e.ds, e.t + kt * e.dt) - e.centre).length2());
+    }
+    return std::sqrt(radius2);
+}
+
+Elements::Place Elements::find(uint32_t slot, uint32_t triangle, float b1, float b2, bool behind) const {
+    const TriangleOf& of = triangles_[slot][triangle];
+    if (of.facet == kNoElement) return {};
+    const Facet& facet = facets_[of.facet];
+    Place out{facet.roots[behind ? 1 : 0], 0, 0};
+    if (out.element == kNoElement || facet.shape == Facet::Shape::polygon) return out;
+    const float b[3] = {1 - b1 - b2, b1, b2};
+    float s = 0, t = 0;
+    if (facet.shape == Facet::Shape::triangle) {
+        for (int k = 0; k < 3; ++k) s += of.corners[k] == 1 ? b[k] : 0, t += of.corners[k] == 2 ? b[k] : 0;
+    } else if (!facet.skewed) {
+        for (int k = 0; k < 3; ++k) s += b[k] * kCornerS[of.corners[k]], t += b[k] * kCornerT[of.corners[k]];
+    } else {
+        // Of p = e1 s + e2 t + e3 s t: first t, from (p − e2 t) × (e1 + e3 t) = 0.
+        const Vec3* c = &corners_[facet.first_corner];
+        const Vec3 e1 = c[1] - c[0], e2 = c[3] - c[0], e3 = c[2] - c[1] - e2;
+        Vec3 p(0, 0, 0);
+        for (int k = 0; k < 3; ++k) p += (c[of.corners[k]] - c[0]) * b[k];
+        const auto cross = [&](const Vec3& x, const Vec3& y) { return x.cross(y).dot(facet.normal); };
+        const float qa = -cross(e2, e3), qb = cross(p, e3) + cross(e1, e2), qc = cross(p, e1);
+        const float root = qb + std::copysign(std::sqrt(std::max(qb * qb - 4 * qa * qc, 0.0f)), qb);
+        t = root != 0 ? -2 * qc / root : 0;
+        const Vec3 along = e1 + e3 * t;
+        s = (p - e2 * t).dot(along) / std::max(along.length2(), 1e-37f);
+    }
+    out.s = s = std::clamp(s, 0.0f, 1.0f);
+    out.t = t = std::clamp(t, 0.0f, 1.0f);
+
+    const auto cell_at = [](float x, uint32_t count) {
+        return std::min(static_cast<uint32_t>(x * static_cast<float>(count)), count - 1);
+    };
+    if (facet.shape == Facet::Shape::quad) {
+        out.element += cell_at(t, facet.up) * facet.across + cell_at(s, facet.across);
+    } else {
+        const uint32_t n = facet.across, row = cell_at(t, n), left = n - row;
+        const float x = s * static_cast<float>(n), y = t * static_cast<float>(n);
+        const uint32_t column = std::min(static_cast<uint32_t>(x), left - 1);
+        const bool turned = column + 1 < left && (x - static_cast<float>(column)) + (y - static_cast<float>(row)) > 1;
+        out.element += n * n - left * left + 2 * column + turned;
+    }
+    while (!elements_[out.element].leaf()) {
+        const Element& e = elements_[out.element];
+        const float u = (s - e.s) / e.ds, v = (t - e.t) / e.dt;
+        uint32_t child;
+        if (facet.shape == Facet::Shape::quad)
+            child = (u >= 0.5f) + 2 * (v >= 0.5f);
+        else
+            child = u >= 0.5f ? 1 : v >= 0.5f ? 2 : u + v > 0.5f ? 3 : 0;
+        out.element = e.first_child + child;
+    }
+    return out;
+}
+
+void Elements::locate(const Facet& facet, float s, float t, uint32_t& triangle, float& b1, float& b2) const {
+    const PlacedSurface& surface = snapshot_->surfaces[facet.slot];
+    triangle = facet.triangle;
+    if (facet.shape == Facet::Shape::polygon) {
+        float share = s;
+        triangle += triangle_by_area(facet, share);
+        const float root = std::sqrt(share);
+        b1 = root * (1 - t);
+        b2 = root * t;
+        return;
+    }
+    // The triangle in whose plane no weight is below 0, or least so: a quad has two.
+    const Vec3 p = point(facet, s, t);
+    float best = -1e30f;
+    const uint32_t count = facet.shape == Facet::Shape::quad ? 2 : 1;
+    for (uint32_t k = 0; k < count; ++k) {
+        const uint32_t* v = surface.vertices + 3 * size_t{facet.triangle + k};
+        const Vec3 p0 = surface.world_position(v[0]), e1 = surface.world_position(v[1]) - p0,
+                   e2 = surface.world_position(v[2]) - p0, n = e1.cross(e2), d = p - p0;
+        const float length2 = std::max(n.length2(), 1e-37f);
+        const float w1 = d.cross(e2).dot(n) / length2, w2 = e1.cross(d).dot(n) / length2;
+        const float least = std::min({w1, w2, 1 - w1 - w2});
+        if (least <= best) continue;
+        best = least;
+        triangle = facet.triangle + k;
+        b1 = std::clamp(w1, 0.0f, 1.0f);
+        b2 = std::clamp(w2, 0.0f, 1.0f - b1);
+    }
+}
+
+}  // namespace trp

@@ -1,0 +1,119 @@
+// The surfaces of a scene cut into elements, of which radiosity is constant in each.
+//
+// Faces become facets: quads that are plane and convex, and triangles, which can be divided at will; what is neither is
+// cut into triangles, or where a face is to be one element, taken as the polygon that it is. A facet has up to two
+// sides, each with a grid of roots of its own, and each root may be divided in four, and these again: quad-trees whose
+// leaves are the elements. Positions are relative to the snapshot's origin; areas in m².
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "shading/snapshot.h"
+
+namespace trp {
+
+inline constexpr uint32_t kNoElement = ~0u;
+
+struct Facet {
+    enum class Shape : uint8_t { triangle, quad, polygon };
+    uint32_t slot = 0, face = 0, triangle = 0;  // of the placed surface; the first triangle
+    Shape shape = Shape::triangle;
+    bool skewed = false;                          // a quad that is no parallelogram
+    uint32_t first_corner = 0, corner_count = 0;  // in Elements, counter-clockwise about the normal
+    Vec3 normal{0, 0, 1};
+    float area = 0;
+    uint32_t across = 1, up = 1;                   // roots; a triangle's grid has across² of them
+    uint32_t roots[2] = {kNoElement, kNoElement};  // the first of the front and of the back; none: not lit
+    uint32_t material = 0;                         // index into Snapshot::materials
+};
+
+// A cell of a facet: the part [s, s + ds] × [t, t + dt] of a quad, or of a triangle the corner (s, t) and the legs ds
+// and dt, which are below 0 in the cells that stand on their heads.
+struct Element {
+    uint32_t facet = 0;
+    uint32_t first_child = kNoElement;  // four in a row
+    float s = 0, t = 0, ds = 1, dt = 1;
+    float area = 0;
+    Vec3 centre{0, 0, 0};
+    uint8_t side = 0;
+    bool leaf() const { return first_child == kNoElement; }
+};
+
+class Elements {
+  public:
+    // `size`: of the elements' sides in metres, at most; 0: one to a face. `patch`: that many elements lie along the
+    // side of a patch. `divisible`: all faces must be quads or triangles. Throws Error where there would be more than
+    // can be numbered.
+    Elements(std::shared_ptr<const Snapshot> snapshot, float size, bool divisible);
+
+    // The same facets undivided, both sides of each: elements 2 f and 2 f + 1.
+    Elements whole_facets() const;
+
+    const Snapshot& snapshot() const { return *snapshot_; }
+    const std::vector<Facet>& facets() const { return facets_; }
+    const Element& operator[](uint32_t element) const { return elements_[element]; }
+    uint32_t size() const { return static_cast<uint32_t>(elements_.size()); }
+    const Facet& facet_of(uint32_t element) const { return facets_[elements_[element].facet]; }
+    Vec3 normal(uint32_t element) const { return facet_of(element).normal * (elements_[element].side ? -1.0f : 1.0f); }
+    double area() const { return area_; }  // of all leaves
+
+    // Makes the roots of a facet's side, in the order of asking.
+    void add_side(uint32_t facet, int side);
+    // Divides a leaf in four.
+    void divide(uint32_t element);
+    // Takes back the divisions that made elements from number `size` on.
+    void merge(uint32_t size);
+
+    // A point of a facet by its coordinates.
+    Vec3 point(const Facet& facet, float s, float t) const;
+    // A point of an element by coordinates of its own, both in [0, 1]; uniform in area where u and v are, but for
+    // skewed quads, which are nearly so.
+    Vec3 point_in(uint32_t element, float u, float v) const;
+    float radius(uint32_t element) const;  // of a ball about its centre that holds it
+    // Three or four corners, or those of a polygon, counter-clockwise about the element's normal.
+    void corners(uint32_t element, std::vector<Vec3d>& out) const;
+
+    // The element that lies at a point of a surface, and the point's coordinates in its facet; kNoElement where that
+    // side has none.
+    struct Place {
+        uint32_t element = kNoElement;
+        float s = 0, t = 0;
+    };
+    Place find(uint32_t slot, uint32_t triangle, float b1, float b2, bool behind) const;
+    // As a ray in that direction meets it.
+    Place find(uint32_t slot, uint32_t triangle, float b1, float b2, const Vec3& direction) const {
+        return find(slot, triangle, b1, b2, is_behind(slot, triangle, direction));
+    }
+    bool is_behind(uint32_t slot, uint32_t triangle, const Vec3& direction) const {
+        const uint32_t facet = triangles_[slot][triangle].facet;
+        return facet != kNoElement && facets_[facet].normal.dot(direction) > 0;
+    }
+    uint32_t facet_at(uint32_t slot, uint32_t triangle) const { return triangles_[slot][triangle].facet; }
+    // And the triangle of the surface, with its barycentrics, that shows a point of a facet; of a polygon, which has no
+    // coordinates, one that is uniform in area where s and t are.
+    void locate(const Facet& facet, float s, float t, uint32_t& triangle, float& b1, float& b2) const;
+
+  private:
+    struct TriangleOf {
+        uint32_t facet = kNoElement;
+        uint8_t corners[3] = {0, 1, 2};  // of the facet
+    };
+    void add_face(uint32_t slot, uint32_t face, uint32_t first_triangle, uint32_t triangle_count);
+    void add_facet(Facet facet, std::span<const Vec3> corners);
+    void set_grid(Facet& facet) const;
+    uint32_t triangle_by_area(const Facet& facet, float& share) const;
+    Element cell(const Facet& facet, uint32_t number) const;
+    void finish(Element& element) const;
+
+    std::shared_ptr<const Snapshot> snapshot_;
+    float size_;
+    bool divisible_;
+    std::vector<Facet> facets_;
+    std::vector<Vec3> corners_;
+    std::vector<std::vector<TriangleOf>> triangles_;  // by slot
+    std::vector<Element> elements_;
+    double area_ = 0;
+};
+
+}  // namespace trp

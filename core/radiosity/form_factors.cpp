@@ -1,0 +1,147 @@
+#include "radiosity/form_factors.h"
+
+#include <algorithm>
+#include <memory>
+#include <numeric>
+
+#include "base/parallel.h"
+#include "film/pixel_random.h"
+#include "radiosity/element_rays.h"
+#include "radiosity/hemicube.h"
+#include "radiosity/polygon_factors.h"
+#include "radiosity/way_rays.h"
+
+namespace trp {
+namespace {
+
+constexpr double kRelativeError = 1e-6;  // of far pairs without anything between them
+constexpr size_t kColumns = 512;         // that a thread takes at a time
+constexpr uint32_t kPairRays = 16;       // between two elements
+
+struct ElementPair {
+    uint32_t a, b;
+};
+
+// How much of element b element a sees, from 0 to 1 by colour: rays between well-distributed points of both, weighed by
+// what they would carry. Of so many pairs; returns the number of rays.
+uint64_t look(const FormFactorJob& job, WayRays& ways, std::span<const ElementPair> pairs, Vec3* out) {
+    const Elements& elements = job.elements;
+    alignas(64) uint32_t keys[kBatch], indices[kBatch];
+    alignas(64) Lanes u, v, s, t;
+    float weights[kBatch];
+    constexpr size_t kInBatch = kBatch / kPairRays;
+    uint64_t rays = 0;
+    for (size_t first = 0; first < pairs.size(); first += kInBatch) {
+        const size_t count = std::min(kInBatch, pairs.size() - first);
+        for (uint32_t lane = 0; lane < kBatch; ++lane) {
+            const ElementPair pair = pairs[first + std::min<size_t>(lane / kPairRays, count - 1)];
+            keys[lane] = (pair.a * 0x9E3779B9u + pair.b) * 0x85EBCA6Bu ^ job.seed;
+            indices[lane] = lane % kPairRays;
+        }
+        random_pair_of(keys, indices, 0, u, v);
+        random_pair_of(keys, indices, 1, s, t);
+        ways.clear();
+        for (int lane = 0; lane < static_cast<int>(count * kPairRays); ++lane) {
+            const auto [a, b] = pairs[first + static_cast<size_t>(lane) / kPairRays];
+            const Vec3 from = elements.point_in(a, u[lane], v[lane]), to = elements.point_in(b, s[lane], t[lane]),
+                       way = to - from, normal = elements.normal(a);
+            const float d2 = way.length2(),
+                        cosines = std::max(normal.dot(way), 0.0f) * std::max(-elements.normal(b).dot(way), 0.0f);
+            // What a ray carries grows without bound where the elements touch: no single one is to speak for all.
+            weights[lane] = cosines > 0 ? cosines / (d2 * std::max(d2, elements[b].area / kPairRays)) : 0;
+            if (cosines > 0) ways.set(lane, elements.facet_of(a).slot, from, normal, to);
+        }
+        rays += ways.trace();
+        for (size_t k = 0; k < count; ++k) {
+            Vec3 sum(0, 0, 0);
+            float total = 0;
+            for (uint32_t ray = 0; ray < kPairRays; ++ray) {
+                const auto lane = static_cast<int>(k * kPairRays + ray);
+                sum += ways.free(lane) * weights[lane];
+                total += weights[lane];
+            }
+            out[first + k] = total > 0 ? sum / total : Vec3(0, 0, 0);
+        }
+    }
+    return rays;
+}
+
+void analytic_row(const FormFactorJob& job, uint32_t i, uint32_t first, Vec3d* out) {
+    const Elements& elements = job.elements;
+    std::vector<Vec3d> from;
+    elements.corners(i, from);
+    const Vec3 normal = elements.normal(i);
+    parallel_ranges(elements.size() - first, kColumns, [&](size_t begin, size_t end) {
+        const auto ways = std::make_unique<WayRays>(elements.snapshot());
+        std::vector<Vec3d> to;
+        std::vector<ElementPair> pairs;
+        std::vector<double> factors;
+        for (size_t k = begin; k < end && !*job.cancelled; ++k) {
+            const auto j = first + static_cast<uint32_t>(k);
+            if (!elements[j].leaf() || elements[j].facet == elements[i].facet) continue;
+            elements.corners(j, to);
+            // Wholly behind each other: the common case of a room is met cheaply.
+            const auto before = [](const std::vector<Vec3d>& polygon, const Vec3& n, const Vec3& origin) {
+                return std::any_of(polygon.begin(), polygon.end(),
+                                   [&](const Vec3d& p) { return (p - Vec3d(origin)).dot(Vec3d(n)) > 0; });
+            };
+            if (!before(to, normal, elements[i].centre) || !before(from, elements.normal(j), elements[j].centre))
+                continue;
+            const double power = polygon_to_polygon(from, to, kRelativeError);
+            if (!(power > 0)) continue;
+            pairs.push_back({i, j});
+            factors.push_back(power / static_cast<double>(elements[i].area));
+        }
+        std::vector<Vec3> seen(pairs.size());
+        *job.rays += look(job, *ways, pairs, seen.data());
+        for (size_t k = 0; k < pairs.size(); ++k) out[pairs[k].b - first] = Vec3d(seen[k]) * factors[k];
+    });
+}
+
+void hemisphere_row(const FormFactorJob& job, uint32_t i, uint32_t first, Vec3d* out) {
+    const Elements& elements = job.elements;
+    const uint32_t count = job.settings.rays, chunks = (count + kBatch - 1) / kBatch;
+    const Vec3 normal = elements.normal(i);
+    std::vector<std::vector<ElementHit>> hits(chunks);  // in the order of the rays, whoever traces them
+    parallel_ranges(chunks, 16, [&](size_t begin, size_t end) {
+        const auto tracer = std::make_unique<ElementTracer>(elements);
+        std::vector<ElementRay> rays;
+        alignas(64) uint32_t keys[kBatch], indices[kBatch];
+        alignas(64) Lanes u, v, s, t;
+        std::fill_n(keys, kBatch, i * 0x9E3779B9u ^ job.seed * 0x85EBCA6Bu);
+        for (size_t chunk = begin; chunk < end && !*job.cancelled; ++chunk) {
+            const uint32_t from = static_cast<uint32_t>(chunk) * kBatch,
+                           in_chunk = std::min<uint32_t>(kBatch, count - from);
+            std::iota(indices, indices + kBatch, from);
+            random_pair_of(keys, indices, 0, u, v);
+            random_pair_of(keys, indices, 1, s, t);
+            rays.clear();
+            for (uint32_t k = 0; k < in_chunk; ++k) {
+                const Vec3 p = elements.point_in(i, s[k], t[k]);
+                rays.push_back({p + normal * clearance(p), cosine_direction(normal, u[k], v[k]), k});
+            }
+            *job.rays += tracer->trace(rays, hits[chunk]);
+        }
+    });
+    const double share = 1.0 / count;
+    for (const auto& of : hits)
+        for (const ElementHit& hit : of)
+            if (hit.element != kNoElement && hit.element >= first)
+                out[hit.element - first] += Vec3d(hit.weight) * share;
+}
+
+}  // namespace
+
+void form_factor_row(const FormFactorJob& job, uint32_t i, uint32_t first, Vec3d* out) {
+    std::fill_n(out, job.elements.size() - first, Vec3d(0, 0, 0));
+    switch (job.settings.form_factors) {
+        case FormFactors::analytic:
+            return analytic_row(job, i, first, out);
+        case FormFactors::hemisphere:
+            return hemisphere_row(job, i, first, out);
+        case FormFactors::hemicube:
+            return hemicube_row(job, i, first, out);
+    }
+}
+
+}  // namespace trp

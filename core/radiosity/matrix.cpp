@@ -1,0 +1,141 @@
+// The system (I − ρF) B = E, solved whole (Goral et al. 1984; Nishita and Nakamae 1985).
+//
+// It is kept in its symmetric form G_ij = A_i F_ij = A_j F_ji, one matrix for each colour where glass or mirrors tint
+// what passes. Sampled rows are made symmetric, the row of more rays to the area counting for more, and scaled so that
+// each keeps its sum, of which rays miss nothing: G ← D G D (Sinkhorn and Knopp 1967).
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "radiosity/form_factors.h"
+#include "radiosity/solver.h"
+
+namespace trp {
+namespace {
+
+constexpr double kSolved = 1e-10;  // residual, of the greatest radiosity
+
+class MatrixSolver : public Solver {
+  public:
+    bool step(const SolverJob& job) override {
+        if (matrices_.empty() && !assemble(job)) return true;
+        sweep(job);
+        ++job.statistics.steps;
+        return job.statistics.residual > kSolved;
+    }
+
+  private:
+    bool assemble(const SolverJob& job);
+    void make_symmetric(const SolverJob& job, std::vector<double>& matrix) const;
+    void sweep(const SolverJob& job);
+
+    size_t count_ = 0;
+    std::vector<std::vector<double>> matrices_;  // one, or one to a colour
+    std::vector<Vec3d> radiosity_;
+};
+
+bool MatrixSolver::assemble(const SolverJob& job) {
+    const Elements& elements = job.elements;
+    count_ = elements.size();
+    const bool tinted = elements.snapshot().any_transmission || elements.snapshot().any_holes ||
+                        std::any_of(elements.snapshot().materials.begin(), elements.snapshot().materials.end(),
+                                    [](const CompiledMaterial& m) { return m.mirrors; });
+    const size_t colors = tinted ? 3 : 1, bytes = colors * count_ * count_ * sizeof(double);
+    if (bytes >> 20 > job.settings.radiosity.memory)
+        fail(TRP_ERROR_MEMORY,
+             "a matrix of {0} x {0} form factors needs {1} MiB, and radiosity.memory allows {2}: choose a larger "
+             "radiosity.element_size, or another solver",
+             count_, bytes >> 20, job.settings.radiosity.memory);
+    std::vector<std::vector<double>> matrices(colors, std::vector<double>(count_ * count_, 0.0));
+    const bool halves = job.settings.radiosity.form_factors == FormFactors::analytic;
+    const FormFactorJob rows{elements, job.settings.radiosity, job.settings.seed, &job.cancelled, &job.statistics.rays};
+    std::atomic<size_t> done{0};
+    parallel_ranges(count_, 1, [&](size_t begin, size_t end) {
+        std::vector<Vec3d> row(count_);
+        for (size_t i = begin; i < end && !job.cancelled; ++i) {
+            const size_t first = halves ? i : 0;
+            form_factor_row(rows, static_cast<uint32_t>(i), static_cast<uint32_t>(first), row.data());
+            const double area = elements[static_cast<uint32_t>(i)].area;
+            for (size_t c = 0; c < colors; ++c)
+                for (size_t j = first; j < count_; ++j)
+                    matrices[c][i * count_ + j] = row[j - first][static_cast<int>(c)] * area;
+            job.fraction = static_cast<double>(++done) / static_cast<double>(count_);
+        }
+    });
+    if (job.cancelled) return false;
+    for (std::vector<double>& matrix : matrices)
+        if (halves)
+            for (size_t i = 0; i < count_; ++i)
+                for (size_t j = 0; j < i; ++j) matrix[i * count_ + j] = matrix[j * count_ + i];
+        else
+            make_symmetric(job, matrix);
+    matrices_ = std::move(matrices);
+    radiosity_.resize(count_);
+    for (size_t i = 0; i < count_; ++i) radiosity_[i] = job.solution.emitted(static_cast<uint32_t>(i));
+    return true;
+}
+
+void MatrixSolver::make_symmetric(const SolverJob& job, std::vector<double>& matrix) const {
+    const Elements& elements = job.elements;
+    std::vector<double> sums(count_, 0.0), scale(count_, 1.0);
+    parallel_ranges(count_, 16, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i)
+            for (size_t j = 0; j < count_; ++j) sums[i] += matrix[i * count_ + j];
+    });
+    for (size_t i = 0; i < count_; ++i)
+        for (size_t j = 0; j < i; ++j) {
+            const double a = elements[static_cast<uint32_t>(i)].area, b = elements[static_cast<uint32_t>(j)].area;
+            double &ij = matrix[i * count_ + j], &ji = matrix[j * count_ + i];
+            ij = ji = (b * ij + a * ji) / (a + b);
+        }
+    for (int round = 0; round < 50; ++round) {
+        double worst = 0;
+        std::vector<double> now(count_, 0.0);
+        parallel_ranges(count_, 16, [&](size_t begin, size_t end) {
+            for (size_t i = begin; i < end; ++i)
+                for (size_t j = 0; j < count_; ++j) now[i] += matrix[i * count_ + j] * scale[i] * scale[j];
+        });
+        for (size_t i = 0; i < count_; ++i) {
+            if (!(now[i] > 0)) continue;
+            worst = std::max(worst, std::abs(sums[i] / now[i] - 1));
+            scale[i] *= std::sqrt(sums[i] / now[i]);
+        }
+        if (worst < 1e-12) break;
+    }
+    for (size_t i = 0; i < count_; ++i)
+        for (size_t j = 0; j < count_; ++j) matrix[i * count_ + j] *= scale[i] * scale[j];
+}
+
+// Gauss and Seidel's method, colour by colour; the residual is that of the sweep's beginning.
+void MatrixSolver::sweep(const SolverJob& job) {
+    Solution& solution = job.solution;
+    double residual[3] = {}, greatest[3] = {};
+    parallel_ranges(3, 1, [&](size_t begin, size_t end) {
+        for (size_t c = begin; c < end; ++c) {
+            const std::vector<double>& matrix = matrices_[std::min(c, matrices_.size() - 1)];
+            const auto k = static_cast<int>(c);
+            for (size_t i = 0; i < count_; ++i) {
+                const auto element = static_cast<uint32_t>(i);
+                const double* const row = &matrix[i * count_];
+                double sum = 0;
+                for (size_t j = 0; j < count_; ++j) sum += row[j] * radiosity_[j][k];
+                const double irradiance = sum / static_cast<double>(job.elements[element].area);
+                const double before = radiosity_[i][k];
+                solution.irradiance[i][k] = irradiance;
+                radiosity_[i][k] = solution.radiosity(element)[k];
+                residual[c] = std::max(residual[c], std::abs(radiosity_[i][k] - before));
+                greatest[c] = std::max(greatest[c], radiosity_[i][k]);
+            }
+        }
+    });
+    const double scale = std::max({greatest[0], greatest[1], greatest[2]});
+    job.statistics.residual = scale > 0 ? std::max({residual[0], residual[1], residual[2]}) / scale : 0;
+}
+
+}  // namespace
+
+std::unique_ptr<Solver> make_matrix_solver() {
+    return std::make_unique<MatrixSolver>();
+}
+
+}  // namespace trp

@@ -1,0 +1,169 @@
+#include "radiosity/radiosity.h"
+
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <set>
+#include <thread>
+
+#include "base/clock.h"
+#include "base/parallel.h"
+#include "radiosity/form_factors.h"
+#include "radiosity/sides.h"
+
+namespace trp {
+
+// Work in an arena on a thread of its own, so that the caller's is free for callbacks.
+bool Radiosity::run(const RenderEvents& events, std::atomic<bool>& cancelled, const std::function<void()>& work) {
+    const std::lock_guard advancing(advancing_);
+    std::mutex mutex;
+    std::condition_variable news;
+    bool done = false;
+    std::exception_ptr error;
+    const auto start = Clock::now();
+    std::thread driver([&] {
+        try {
+            Arena arena(settings.threads);
+            arena.run([&] {
+                const FlushDenormals flush;
+                work();
+            });
+        } catch (...) {
+            error = std::current_exception();
+        }
+        const std::lock_guard lock(mutex);
+        done = true;
+        news.notify_all();
+    });
+    std::exception_ptr callback_error;
+    std::unique_lock lock(mutex);
+    while (!done) {
+        news.wait_for(lock, std::chrono::milliseconds(50), [&] { return done; });
+        if (done || !events.progress || cancelled) continue;
+        lock.unlock();
+        TrpProgress progress{};
+        progress.struct_size = sizeof progress;
+        progress.fraction = fraction_;
+        progress.seconds = seconds_ + seconds_since(start);
+        progress.seconds_left = -1;
+        progress.pass = statistics_.steps;
+        progress.pass_count = settings.radiosity.iterations;
+        progress.stage = elements_ ? "Solving" : "Preparing";
+        try {
+            if (!events.progress(progress)) cancelled = true;
+        } catch (...) {
+            callback_error = std::current_exception();
+            cancelled = true;
+        }
+        lock.lock();
+    }
+    lock.unlock();
+    driver.join();
+    seconds_ += seconds_since(start);
+    if (callback_error) std::rethrow_exception(callback_error);
+    if (error) std::rethrow_exception(error);
+    return !cancelled;
+}
+
+void Radiosity::make_elements(std::atomic<bool>& cancelled) {
+    const RadiositySettings& r = settings.radiosity;
+    const bool hierarchical = r.solver == RadiositySolver::hierarchical,
+               patches = r.solver == RadiositySolver::progressive && r.patch_levels > 0;
+    const float size = hierarchical ? 0 : std::ldexp(r.element_size, static_cast<int>(patches ? r.patch_levels : 0));
+    auto elements = std::make_shared<Elements>(snapshot_, size, hierarchical || patches);
+    const LightingJob job{*elements, settings.illumination, settings.seed, 4, &cancelled, &statistics_.rays};
+    add_sides(*elements, job);
+    for (uint32_t level = 0, first = 0; patches && level < r.patch_levels; ++level) {
+        const uint32_t end = elements->size();
+        for (; first < end; ++first) elements->divide(first);
+    }
+    Solution solution;
+    solution.light.resize(elements->size());
+    solution.irradiance.assign(elements->size(), Vec3d(0, 0, 0));
+    light_elements(job, 0, solution.light);
+    if (cancelled) return;
+    elements_ = std::move(elements);
+    solution_ = std::move(solution);
+    warn_of_clamped();
+}
+
+void Radiosity::warn_of_clamped() {
+    std::set<uint32_t> clamped;
+    for (uint32_t i = 0; i < elements_->size(); ++i)
+        if (solution_.light[i].clamped) clamped.insert(elements_->facet_of(i).material);
+    for (const uint32_t m : clamped)
+        warnings_.push_back({TRP_WARNING_MATERIAL, TRP_NO_ID,
+                             fmt::format("material \"{}\" reflects as much as it receives or more: {} of it is taken",
+                                         snapshot_->materials[m].name, kGreatestReflectance)});
+    if (elements_->size() == 0)
+        warnings_.push_back({TRP_WARNING_MESH, TRP_NO_ID, "the scene has no surface to be lit"});
+}
+
+bool Radiosity::prepare(const RenderEvents& events, std::atomic<bool>& cancelled) {
+    return elements_ || run(events, cancelled, [&] { make_elements(cancelled); });
+}
+
+bool Radiosity::advance(uint32_t steps, const RenderEvents& events, std::atomic<bool>& cancelled) {
+    if (!solver_) {
+        const RadiositySolver solver = settings.radiosity.solver;
+        solver_ = solver == RadiositySolver::matrix        ? make_matrix_solver()
+                  : solver == RadiositySolver::progressive ? make_progressive_solver()
+                                                           : make_hierarchical_solver();
+    }
+    return run(events, cancelled, [&] {
+        if (!elements_) make_elements(cancelled);
+        const uint32_t most = settings.radiosity.iterations;
+        if (steps > 0 || most == 0 || statistics_.steps < most) vertices_.reset();
+        for (uint32_t k = 0; (steps == 0 || k < steps) && !solved_ && !cancelled; ++k) {
+            if (steps == 0 && most > 0 && statistics_.steps >= most) break;
+            fraction_ = most > 0 ? static_cast<double>(statistics_.steps) / most : 0;
+            const SolverJob job{*elements_, solution_, settings, statistics_, cancelled, fraction_};
+            solved_ = !solver_->step(job) && !cancelled;
+        }
+    });
+}
+
+void Radiosity::form_factors(uint32_t element, std::vector<Vec3d>& out) {
+    std::atomic<bool> cancelled{false};
+    out.resize(elements_->size());
+    Arena arena(settings.threads);
+    arena.run([&] {
+        form_factor_row({*elements_, settings.radiosity, settings.seed, &cancelled, &statistics_.rays}, element, 0,
+                        out.data());
+    });
+}
+
+const ElementVertices& Radiosity::vertices() {
+    if (!vertices_) vertices_ = std::make_shared<const ElementVertices>(*elements_);
+    return *vertices_;
+}
+
+std::shared_ptr<const ShownSolution> Radiosity::shown(const RadiositySettings& view) {
+    const std::unique_lock lock(advancing_, std::try_to_lock);
+    if (!lock) fail(TRP_ERROR_STATE, "the radiosity solution is being advanced");
+    if (!elements_) return nullptr;
+    auto out = std::make_shared<ShownSolution>();
+    vertices();
+    out->vertices = vertices_;
+    out->elements = std::make_shared<const Elements>(*elements_);
+    out->leaves.resize(elements_->size());
+    for (uint32_t i = 0; i < elements_->size(); ++i) {
+        if (!(*elements_)[i].leaf()) continue;
+        Vec3d arriving = solution_.irradiance[i] + Vec3d(solution_.light[i].irradiance);
+        if (view.ambient) arriving += solution_.ambient;
+        if (view.view == RadiositySettings::View::radiosity)
+            arriving = Vec3d(solution_.light[i].emission) + solution_.reflected(i, arriving);
+        else if (view.view == RadiositySettings::View::unshot)
+            arriving = solution_.unshot.empty() ? Vec3d(0, 0, 0) : solution_.unshot[i];
+        out->leaves[i] = Vec3(arriving);
+    }
+    out->at_vertices = out->vertices->average(*elements_, out->leaves);
+    return out;
+}
+
+void Radiosity::links(std::vector<ElementLink>& out) const {
+    out.clear();
+    if (solver_) solver_->links(*elements_, out);
+}
+
+}  // namespace trp

@@ -1,0 +1,65 @@
+// What the solvers of radiosity have in common. Each advances a solution step by step: B = E + ρ H, with the irradiance
+// H of lamps and of other elements (Goral et al., "Modeling the Interaction of Light Between Diffuse Surfaces", 1984,
+// eq. 5). A solution is valid after each step, and where a step was cancelled.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+
+#include "film/settings.h"
+#include "radiosity/element_light.h"
+
+namespace trp {
+
+// By element, divided ones too, whose values are means of their parts.
+struct Solution {
+    std::vector<ElementLight> light;
+    std::vector<Vec3d> irradiance;  // of other elements, W/m²
+    std::vector<Vec3d> unshot;      // progressive: radiosity that has not been shot yet, W/m²; else empty
+    Vec3d ambient{0, 0, 0};         // progressive: irradiance that stands for what is unshot, for display
+
+    Vec3d reflected(uint32_t i, const Vec3d& arriving) const { return Vec3d(light[i].reflectance) * arriving; }
+    Vec3d emitted(uint32_t i) const { return Vec3d(light[i].emission) + reflected(i, Vec3d(light[i].irradiance)); }
+    Vec3d radiosity(uint32_t i) const { return emitted(i) + reflected(i, irradiance[i]); }
+};
+
+struct SolverStatistics {
+    std::atomic<uint64_t> rays{0};
+    uint64_t links = 0;
+    uint32_t steps = 0;
+    double residual = 0;  // of the equation, or the estimated error, or the share that is unshot: as the solver says
+};
+
+struct SolverJob {
+    Elements& elements;
+    Solution& solution;
+    const Settings& settings;
+    SolverStatistics& statistics;
+    std::atomic<bool>& cancelled;
+    std::atomic<double>& fraction;  // of the step, 0 to 1
+
+    LightingJob lighting() const {
+        return {elements, settings.illumination, settings.seed, 4, &cancelled, &statistics.rays};
+    }
+};
+
+struct ElementLink {
+    uint32_t receiver, source;  // elements; kNoElement: a group of them
+    Vec3 factor;                // irradiance at the receiver for a radiosity of 1
+    Vec3 ends[2];               // middles, relative to the origin
+};
+
+class Solver {
+  public:
+    virtual ~Solver() = default;
+    // One step, in the current arena. Returns whether there is more to do.
+    virtual bool step(const SolverJob& job) = 0;
+    virtual void links(const Elements&, std::vector<ElementLink>&) const {}
+};
+
+std::unique_ptr<Solver> make_matrix_solver();
+std::unique_ptr<Solver> make_progressive_solver();
+std::unique_ptr<Solver> make_hierarchical_solver();
+
+}  // namespace trp
