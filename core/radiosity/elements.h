@@ -89,7 +89,6 @@ class Elements {
         const uint32_t facet = triangles_[slot][triangle].facet;
         return facet != kNoElement && facets_[facet].normal.dot(direction) > 0;
     }
-    uint32_t facet_at(uint32_t slot, uint32_t triangle) const { return triangles_[slot][triangle].facet; }
     // And the triangle of the surface, with its barycentrics, that shows a point of a facet; of a polygon, which has no
     // coordinates, one that is uniform in area where s and t are.
     void locate(const Facet& facet, float s, float t, uint32_t& triangle, float& b1, float& b2) const;

@@ -46,7 +46,7 @@ struct FaceScratch {
 };
 
 // All that the pixels of a face see, layer after layer where surfaces are seen through.
-void draw_face(const FormFactorJob& job, uint32_t i, int face, bool all_layers, std::vector<SeenPixel>& out) {
+void draw_face(const FormFactorJob& job, uint32_t i, int face, std::vector<SeenPixel>& out) {
     const Elements& elements = job.elements;
     const Snapshot& snapshot = elements.snapshot();
     const uint32_t resolution = job.settings.hemicube_resolution, y0 = face == 0 ? 0 : resolution / 2;
@@ -56,7 +56,7 @@ void draw_face(const FormFactorJob& job, uint32_t i, int face, bool all_layers, 
     const auto w = std::make_unique<FaceScratch>();
     const uint32_t across = resolution / kBlockSide, up = (resolution - y0) / kBlockSide;
     w->tile.place(0, static_cast<int32_t>(y0), across, up);
-    const bool layered = all_layers && snapshot.seen_through;
+    const bool layered = snapshot.seen_through;
     if (layered) {
         w->throughput.resize(size_t{across} * up);
         for (LaneVec3& lanes : w->throughput)
@@ -113,22 +113,13 @@ double delta_form_factor(int face, uint32_t resolution, uint32_t x, uint32_t y) 
 void hemicube_row(const FormFactorJob& job, uint32_t i, uint32_t first, Vec3d* out) {
     std::vector<SeenPixel> seen[kHemicubeFaces];
     parallel_ranges(kHemicubeFaces, 1, [&](size_t begin, size_t end) {
-        for (size_t face = begin; face < end; ++face) draw_face(job, i, static_cast<int>(face), true, seen[face]);
+        for (size_t face = begin; face < end; ++face) draw_face(job, i, static_cast<int>(face), seen[face]);
     });
     for (int face = 0; face < kHemicubeFaces; ++face)
         for (const SeenPixel& pixel : seen[face])
             if (pixel.element >= first)
                 out[pixel.element - first] +=
                     Vec3d(pixel.weight) * delta_form_factor(face, job.settings.hemicube_resolution, pixel.x, pixel.y);
-}
-
-std::vector<uint32_t> hemicube_face(const FormFactorJob& job, uint32_t i, int face) {
-    const uint32_t resolution = job.settings.hemicube_resolution;
-    std::vector<SeenPixel> seen;
-    draw_face(job, i, face, false, seen);
-    std::vector<uint32_t> out(size_t{resolution} * resolution, kNoElement);
-    for (const SeenPixel& pixel : seen) out[size_t{pixel.y} * resolution + pixel.x] = pixel.element;
-    return out;
 }
 
 }  // namespace trp

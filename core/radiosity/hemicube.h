@@ -14,7 +14,4 @@ inline constexpr int kHemicubeFaces = 5;  // the top, then the sides towards +x,
 // Of the pixel (x, y) of a face of `resolution`² pixels; sides have their upper half alone, y ≥ resolution / 2.
 double delta_form_factor(int face, uint32_t resolution, uint32_t x, uint32_t y);
 
-// What the pixels of a face see, row after row from the bottom: elements, or kNoElement. The nearest surfaces alone.
-std::vector<uint32_t> hemicube_face(const FormFactorJob& job, uint32_t i, int face);
-
 }  // namespace trp
