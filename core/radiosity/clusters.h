@@ -29,6 +29,17 @@ struct ElementClusters {
     std::vector<uint32_t> roots;           // elements, cluster by cluster
     std::vector<float> areas;              // of the roots before each, and of all
 
+    const ElementCluster& of(NodeId cluster) const { return clusters[cluster & ~kClusterBit]; }
+    // Of any node.
+    float area(const Elements& elements, NodeId node) const {
+        return is_cluster(node) ? of(node).area : elements[node].area;
+    }
+    Vec3 centre(const Elements& elements, NodeId node) const {
+        return is_cluster(node) ? of(node).centre : elements[node].centre;
+    }
+    float radius(const Elements& elements, NodeId node) const {
+        return is_cluster(node) ? of(node).radius : elements.radius(node);
+    }
     // The root that a share of a cluster's area, in [0, 1), falls into.
     uint32_t root_at(const ElementCluster& cluster, float share) const;
 };

@@ -11,6 +11,8 @@
 namespace trp {
 namespace {
 
+constexpr uint32_t kSide = 4, kPlaces = kSide * kSide;  // of an element, that are looked at
+
 // One to a thread.
 struct Scratch {
     Points points;
@@ -24,16 +26,9 @@ struct Scratch {
 // Place number k of an element, at the middle of a cell of its grid.
 void put(const LightingJob& job, uint32_t element, uint32_t k, int lane, Scratch& w) {
     const Elements& elements = job.elements;
-    const Element& e = elements[element];
-    const Facet& facet = elements.facets()[e.facet];
-    const float side = static_cast<float>(job.side), u = (static_cast<float>(k % job.side) + 0.5f) / side,
-                v = (static_cast<float>(k / job.side) + 0.5f) / side;
-    float s = e.s + u * e.ds, t = e.t + v * e.dt;
-    if (facet.shape == Facet::Shape::triangle) {
-        const float root = std::sqrt(u);
-        s = e.s + root * (1 - v) * e.ds;
-        t = e.t + root * v * e.dt;
-    }
+    const Facet& facet = elements.facet_of(element);
+    const auto [s, t] = elements.coordinates_in(element, (static_cast<float>(k % kSide) + 0.5f) / kSide,
+                                                (static_cast<float>(k / kSide) + 0.5f) / kSide);
     Points& points = w.points;
     points.slot[lane] = facet.slot;
     elements.locate(facet, s, t, points.triangle[lane], points.b1[lane], points.b2[lane]);
@@ -46,8 +41,7 @@ void put(const LightingJob& job, uint32_t element, uint32_t k, int lane, Scratch
 // Textures are filtered over the cell that a place stands for, taken as a part of the triangle's own coordinates.
 void set_footprints(const LightingJob& job, uint32_t element, int lane, Points& points) {
     const float triangle = points.edge1.get(lane).cross(points.edge2.get(lane)).length() / 2;
-    const float step =
-        std::sqrt(job.elements[element].area / std::max(triangle, 1e-37f)) / static_cast<float>(job.side);
+    const float step = std::sqrt(job.elements[element].area / std::max(triangle, 1e-37f)) / kSide;
     points.b1_dx[lane] = points.b2_dy[lane] = step;
     points.b1_dy[lane] = points.b2_dx[lane] = 0;
 }
@@ -81,14 +75,13 @@ void add_lamps(const LightingJob& job, Scratch& w) {
 }
 
 // The means of an element's places, which stand in so many lanes from `first` on.
-ElementLight mean(const LightingJob& job, int first, const Scratch& w) {
-    const auto places = static_cast<int>(job.side * job.side);
+ElementLight mean(int first, const Scratch& w) {
     ElementLight out;
     float bright = 0, squares = 0;
-    for (int k = 0; k < places; ++k) {
+    for (int k = 0; k < static_cast<int>(kPlaces); ++k) {
         const int i = first + k;
         if (w.points.slot[i] == kNoSlot) continue;
-        const float alpha = w.coefficients.alpha[i], share = 1 / static_cast<float>(places);
+        const float alpha = w.coefficients.alpha[i], share = 1.0f / kPlaces;
         const Vec3 reflectance = w.coefficients.diffuse.get(i) * alpha;
         for (int c = 0; c < 3; ++c) {
             out.clamped |= reflectance[c] > kGreatestReflectance;
@@ -107,23 +100,23 @@ ElementLight mean(const LightingJob& job, int first, const Scratch& w) {
 }  // namespace
 
 void light_elements(const LightingJob& job, uint32_t first, std::span<ElementLight> out) {
-    const uint32_t places = job.side * job.side, in_batch = kBatch / places;
-    const size_t batches = (out.size() + in_batch - 1) / in_batch;
+    constexpr uint32_t kInBatch = kBatch / kPlaces;
+    const size_t batches = (out.size() + kInBatch - 1) / kInBatch;
     parallel_ranges(batches, 4, [&](size_t begin, size_t end) {
         const auto w = std::make_unique<Scratch>();
         for (size_t b = begin; b < end && !*job.cancelled; ++b) {
-            const size_t from = b * in_batch, count = std::min<size_t>(in_batch, out.size() - from);
+            const size_t from = b * kInBatch, count = std::min<size_t>(kInBatch, out.size() - from);
             std::fill_n(w->points.slot, kBatch, kNoSlot);
-            for (uint32_t lane = 0; lane < count * places; ++lane)
-                put(job, first + static_cast<uint32_t>(from) + lane / places, lane % places, static_cast<int>(lane),
+            for (uint32_t lane = 0; lane < count * kPlaces; ++lane)
+                put(job, first + static_cast<uint32_t>(from) + lane / kPlaces, lane % kPlaces, static_cast<int>(lane),
                     *w);
             locate(job.elements.snapshot(), NormalChoice::flat, w->points);
-            for (uint32_t lane = 0; lane < count * places; ++lane)
-                set_footprints(job, first + static_cast<uint32_t>(from) + lane / places, static_cast<int>(lane),
+            for (uint32_t lane = 0; lane < count * kPlaces; ++lane)
+                set_footprints(job, first + static_cast<uint32_t>(from) + lane / kPlaces, static_cast<int>(lane),
                                w->points);
             evaluate(job.elements.snapshot(), w->points, w->coefficients, w->program);
             add_lamps(job, *w);
-            for (size_t k = 0; k < count; ++k) out[from + k] = mean(job, static_cast<int>(k * places), *w);
+            for (size_t k = 0; k < count; ++k) out[from + k] = mean(static_cast<int>(k * kPlaces), *w);
         }
     });
 }

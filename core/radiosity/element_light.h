@@ -22,7 +22,6 @@ struct LightingJob {
     const Elements& elements;
     Illumination illumination;
     uint32_t seed = 0;
-    uint32_t side = 4;  // side² places of each element are looked at, at most 256
     std::atomic<bool>* cancelled = nullptr;
     std::atomic<uint64_t>* rays = nullptr;
 };

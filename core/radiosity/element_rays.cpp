@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <numbers>
+#include <numeric>
 
+#include "film/pixel_random.h"
 #include "geometry/embree.h"
 
 namespace trp {
@@ -18,6 +20,22 @@ Vec3 cosine_direction(const Vec3& normal, float u, float v) {
     const Vec3 x = perpendicular_to(normal), y = normal.cross(x);
     const float r = std::sqrt(u), angle = 2 * std::numbers::pi_v<float> * v;
     return x * (r * std::cos(angle)) + y * (r * std::sin(angle)) + normal * std::sqrt(std::max(1 - u, 0.0f));
+}
+
+void make_hemisphere_rays(const Elements& elements, uint32_t element, uint32_t key, uint32_t first, uint32_t count,
+                          std::vector<ElementRay>& out) {
+    alignas(64) uint32_t keys[kBatch], indices[kBatch];
+    alignas(64) Lanes u, v, s, t;
+    std::fill_n(keys, kBatch, key);
+    std::iota(indices, indices + kBatch, first);
+    random_pair_of(keys, indices, 0, u, v);
+    random_pair_of(keys, indices, 1, s, t);
+    const Vec3 normal = elements.normal(element);
+    out.clear();
+    for (uint32_t k = 0; k < count; ++k) {
+        const Vec3 p = elements.point_in(element, s[k], t[k]);
+        out.push_back({p + normal * clearance(p), cosine_direction(normal, u[k], v[k]), k});
+    }
 }
 
 uint64_t ElementTracer::trace(std::vector<ElementRay>& rays, std::vector<ElementHit>& hits) {

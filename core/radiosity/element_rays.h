@@ -48,6 +48,12 @@ inline float clearance(const Vec3& p) {
     return 0x1p-18f * std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z), 1e-3f});
 }
 
+// Rays number `first` to `first` + `count` of an element's sequence (at most kBatch of them): from points of it, in
+// directions that are uniform in the base circle of its hemisphere. Their ids are their places in `out`, which is
+// cleared before.
+void make_hemisphere_rays(const Elements& elements, uint32_t element, uint32_t key, uint32_t first, uint32_t count,
+                          std::vector<ElementRay>& out);
+
 // The direction about a normal for numbers in [0, 1), with a density of cosine over π (Malley's method).
 Vec3 cosine_direction(const Vec3& normal, float u, float v);
 

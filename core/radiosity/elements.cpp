@@ -243,13 +243,18 @@ Vec3 Elements::point(const Facet& facet, float s, float t) const {
     return (p[0] * (1 - s) + p[1] * s) * (1 - t) + (p[3] * (1 - s) + p[2] * s) * t;
 }
 
-Vec3 Elements::point_in(uint32_t element, float u, float v) const {
+std::array<float, 2> Elements::coordinates_in(uint32_t element, float u, float v) const {
     const Element& e = elements_[element];
-    const Facet& facet = facets_[e.facet];
-    if (facet.shape == Facet::Shape::quad) return point(facet, e.s + u * e.ds, e.t + v * e.dt);
-    if (facet.shape == Facet::Shape::triangle) {
-        const float root = std::sqrt(u);
-        return point(facet, e.s + root * (1 - v) * e.ds, e.t + root * v * e.dt);
+    if (facets_[e.facet].shape != Facet::Shape::triangle) return {e.s + u * e.ds, e.t + v * e.dt};
+    const float root = std::sqrt(u);
+    return {e.s + root * (1 - v) * e.ds, e.t + root * v * e.dt};
+}
+
+Vec3 Elements::point_in(uint32_t element, float u, float v) const {
+    const Facet& facet = facet_of(element);
+    if (facet.shape != Facet::Shape::polygon) {
+        const auto [s, t] = coordinates_in(element, u, v);
+        return point(facet, s, t);
     }
     uint32_t triangle;
     float b1, b2;
@@ -278,36 +283,26 @@ uint32_t Elements::triangle_by_area(const Facet& facet, float& share) const {
     return t;
 }
 
+Vec3 Elements::corner(const Element& e, uint32_t k) const {
+    const Facet& facet = facets_[e.facet];
+    if (facet.shape == Facet::Shape::polygon) return corners_[facet.first_corner + k];
+    const bool quad = facet.shape == Facet::Shape::quad;
+    const float ks = quad ? kCornerS[k] : k == 1, kt = quad ? kCornerT[k] : k == 2;
+    return point(facet, e.s + ks * e.ds, e.t + kt * e.dt);
+}
+
 void Elements::corners(uint32_t element, std::vector<Vec3d>& out) const {
     out.clear();
     const Element& e = elements_[element];
-    const Facet& facet = facets_[e.facet];
-    if (facet.shape == Facet::Shape::polygon) {
-        for (uint32_t k = 0; k < facet.corner_count; ++k) out.emplace_back(corners_[facet.first_corner + k]);
-    } else {
-        const int count = facet.shape == Facet::Shape::quad ? 4 : 3;
-        for (int k = 0; k < count; ++k) {
-            const float ks = count == 4 ? kCornerS[k] : k == 1, kt = count == 4 ? kCornerT[k] : k == 2;
-            out.emplace_back(point(facet, e.s + ks * e.ds, e.t + kt * e.dt));
-        }
-    }
+    for (uint32_t k = 0; k < facets_[e.facet].corner_count; ++k) out.emplace_back(corner(e, k));
     if (e.side) std::reverse(out.begin(), out.end());
 }
 
 float Elements::radius(uint32_t element) const {
     const Element& e = elements_[element];
-    const Facet& facet = facets_[e.facet];
     float radius2 = 0;
-    if (facet.shape == Facet::Shape::polygon) {
-        for (uint32_t k = 0; k < facet.corner_count; ++k)
-            radius2 = std::max(radius2, (corners_[facet.first_corner + k] - e.centre).length2());
-        return std::sqrt(radius2);
-    }
-    for (int k = 0; k < (facet.shape == Facet::Shape::quad ? 4 : 3); ++k) {
-        const bool quad = facet.shape == Facet::Shape::quad;
-        const float ks = quad ? kCornerS[k] : k == 1, kt = quad ? kCornerT[k] : k == 2;
-        radius2 = std::max(radius2, (point(facet, e.s + ks * e.ds, e.t + kt * e.dt) - e.centre).length2());
-    }
+    for (uint32_t k = 0; k < facets_[e.facet].corner_count; ++k)
+        radius2 = std::max(radius2, (corner(e, k) - e.centre).length2());
     return std::sqrt(radius2);
 }
 

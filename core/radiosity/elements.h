@@ -6,6 +6,7 @@
 // leaves are the elements. Positions are relative to the snapshot's origin; areas in m².
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -42,9 +43,8 @@ struct Element {
 
 class Elements {
   public:
-    // `size`: of the elements' sides in metres, at most; 0: one to a face. `patch`: that many elements lie along the
-    // side of a patch. `divisible`: all faces must be quads or triangles. Throws Error where there would be more than
-    // can be numbered.
+    // `size`: of the elements' sides in metres, at most; 0: one to a face. `divisible`: all faces must be quads or
+    // triangles.
     Elements(std::shared_ptr<const Snapshot> snapshot, float size, bool divisible);
 
     // The same facets undivided, both sides of each: elements 2 f and 2 f + 1.
@@ -58,7 +58,8 @@ class Elements {
     Vec3 normal(uint32_t element) const { return facet_of(element).normal * (elements_[element].side ? -1.0f : 1.0f); }
     double area() const { return area_; }  // of all leaves
 
-    // Makes the roots of a facet's side, in the order of asking.
+    // Makes the roots of a facet's side, in the order of asking. Throws Error, as divide() does, where there would be
+    // more elements than can be numbered.
     void add_side(uint32_t facet, int side);
     // Divides a leaf in four.
     void divide(uint32_t element);
@@ -67,6 +68,9 @@ class Elements {
 
     // A point of a facet by its coordinates.
     Vec3 point(const Facet& facet, float s, float t) const;
+    // The facet's coordinates of a point of an element that is given by coordinates of its own, as in point_in(); those
+    // themselves in a polygon.
+    std::array<float, 2> coordinates_in(uint32_t element, float u, float v) const;
     // A point of an element by coordinates of its own, both in [0, 1]; uniform in area where u and v are, but for
     // skewed quads, which are nearly so.
     Vec3 point_in(uint32_t element, float u, float v) const;
@@ -102,6 +106,7 @@ class Elements {
     void add_facet(Facet facet, std::span<const Vec3> corners);
     void set_grid(Facet& facet) const;
     uint32_t triangle_by_area(const Facet& facet, float& share) const;
+    Vec3 corner(const Element& element, uint32_t k) const;  // about the facet's normal
     Element cell(const Facet& facet, uint32_t number) const;
     void finish(Element& element) const;
 

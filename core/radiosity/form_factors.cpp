@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <numeric>
 
 #include "base/parallel.h"
 #include "film/pixel_random.h"
@@ -101,25 +100,14 @@ void analytic_row(const FormFactorJob& job, uint32_t i, uint32_t first, Vec3d* o
 void hemisphere_row(const FormFactorJob& job, uint32_t i, uint32_t first, Vec3d* out) {
     const Elements& elements = job.elements;
     const uint32_t count = job.settings.rays, chunks = (count + kBatch - 1) / kBatch;
-    const Vec3 normal = elements.normal(i);
     std::vector<std::vector<ElementHit>> hits(chunks);  // in the order of the rays, whoever traces them
     parallel_ranges(chunks, 16, [&](size_t begin, size_t end) {
         const auto tracer = std::make_unique<ElementTracer>(elements);
         std::vector<ElementRay> rays;
-        alignas(64) uint32_t keys[kBatch], indices[kBatch];
-        alignas(64) Lanes u, v, s, t;
-        std::fill_n(keys, kBatch, i * 0x9E3779B9u ^ job.seed * 0x85EBCA6Bu);
         for (size_t chunk = begin; chunk < end && !*job.cancelled; ++chunk) {
-            const uint32_t from = static_cast<uint32_t>(chunk) * kBatch,
-                           in_chunk = std::min<uint32_t>(kBatch, count - from);
-            std::iota(indices, indices + kBatch, from);
-            random_pair_of(keys, indices, 0, u, v);
-            random_pair_of(keys, indices, 1, s, t);
-            rays.clear();
-            for (uint32_t k = 0; k < in_chunk; ++k) {
-                const Vec3 p = elements.point_in(i, s[k], t[k]);
-                rays.push_back({p + normal * clearance(p), cosine_direction(normal, u[k], v[k]), k});
-            }
+            const uint32_t from = static_cast<uint32_t>(chunk) * kBatch;
+            make_hemisphere_rays(elements, i, i * 0x9E3779B9u ^ job.seed * 0x85EBCA6Bu, from,
+                                 std::min<uint32_t>(kBatch, count - from), rays);
             *job.rays += tracer->trace(rays, hits[chunk]);
         }
     });

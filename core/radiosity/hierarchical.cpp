@@ -24,10 +24,6 @@ constexpr uint32_t kMostSweeps = 500;
 constexpr size_t kMostLinks = 1 << 18;    // then the solution is left as it is; its residual says how good
 constexpr float kSmallest = 1.0f / 1024;  // side of an element, of the scene's extent, where no size is given
 
-double brightness(const Vec3d& v) {
-    return 0.2126 * v.x + 0.7152 * v.y + 0.0722 * v.z;
-}
-
 // Whether a part of each of two elements lies before the other's plane.
 bool may_see(const Elements& elements, uint32_t a, uint32_t b) {
     const auto reaches = [&](uint32_t from, uint32_t to) {
@@ -66,7 +62,11 @@ class HierarchicalSolver : public Solver {
     double measure(const SolverJob& job);
     bool refine(const SolverJob& job);
     float extent(const Elements& elements, NodeId id) const;
-    void children(const Elements& elements, NodeId id, std::vector<NodeId>& out) const;
+    struct Children {
+        NodeId ids[4];
+        uint32_t count;
+    };
+    Children children(const Elements& elements, NodeId id) const;  // not of leaves
     bool may_divide(const Elements& elements, uint32_t element) const {
         return elements.facet_of(element).shape != Facet::Shape::polygon && elements[element].area > 4 * least_area_;
     }
@@ -86,18 +86,14 @@ class HierarchicalSolver : public Solver {
     double tolerance_ = 0;
 };
 
-void HierarchicalSolver::children(const Elements& elements, NodeId id, std::vector<NodeId>& out) const {
-    out.clear();
-    if (is_cluster(id)) {
-        const ElementCluster& cluster = clusters_.clusters[id & ~kClusterBit];
-        out.assign(cluster.children, cluster.children + 2);
-    } else if (!elements[id].leaf()) {
-        for (uint32_t k = 0; k < 4; ++k) out.push_back(elements[id].first_child + k);
-    }
+HierarchicalSolver::Children HierarchicalSolver::children(const Elements& elements, NodeId id) const {
+    if (is_cluster(id)) return {{clusters_.of(id).children[0], clusters_.of(id).children[1]}, 2};
+    const uint32_t first = elements[id].first_child;
+    return {{first, first + 1, first + 2, first + 3}, 4};
 }
 
 float HierarchicalSolver::extent(const Elements& elements, NodeId id) const {
-    return is_cluster(id) ? 2 * clusters_.clusters[id & ~kClusterBit].radius : std::sqrt(elements[id].area);
+    return is_cluster(id) ? 2 * clusters_.of(id).radius : std::sqrt(elements[id].area);
 }
 
 // Between the two halves of all clusters, or where there are none between all elements, both ways; within an element
@@ -183,28 +179,21 @@ void HierarchicalSolver::push_pull(const SolverJob& job, NodeId id, const Vec3d&
         n.error = static_cast<float>(reflectance * reflectance * (error + uneven * uneven));
         return;
     }
-    NodeId parts[4];
-    uint32_t count = 4;
-    if (is_cluster(id)) {
-        count = 2;
-        std::copy_n(clusters_.clusters[id & ~kClusterBit].children, 2, parts);
-    } else {
-        for (uint32_t k = 0; k < 4; ++k) parts[k] = elements[id].first_child + k;
-    }
+    const Children parts = children(elements, id);
     double area = 0, squares = 0, reflectance = 0, errors = 0;
     Vec3d radiosity(0, 0, 0), arriving(0, 0, 0);
-    for (uint32_t k = 0; k < count; ++k) {
-        push_pull(job, parts[k], irradiance, error);
-        const Node& part = node(parts[k]);
-        const double a =
-            is_cluster(parts[k]) ? clusters_.clusters[parts[k] & ~kClusterBit].area : elements[parts[k]].area;
+    for (uint32_t k = 0; k < parts.count; ++k) {
+        const NodeId child = parts.ids[k];
+        push_pull(job, child, irradiance, error);
+        const Node& part = node(child);
+        const double a = clusters_.area(elements, child);
         const double bright = brightness(part.radiosity);
         area += a;
         radiosity += part.radiosity * a;
         squares += a * (bright * bright + static_cast<double>(part.variance));
         reflectance += a * static_cast<double>(part.reflectance);
         errors += a * static_cast<double>(part.error);
-        if (!is_cluster(id)) arriving += solution.irradiance[parts[k]] * a;
+        if (!is_cluster(id)) arriving += solution.irradiance[child] * a;
     }
     n.radiosity = radiosity / area;
     const double mean = brightness(n.radiosity);
@@ -231,7 +220,7 @@ void HierarchicalSolver::solve(const SolverJob& job) {
         double now = 0;
         for (const NodeId top : tops_) {
             push_pull(job, top, Vec3d(0, 0, 0), 0);
-            const double area = is_cluster(top) ? clusters_.clusters[top & ~kClusterBit].area : job.elements[top].area;
+            const double area = clusters_.area(job.elements, top);
             now += area * brightness(node(top).radiosity);
         }
         if (std::abs(now - before) <= 1e-6 * now) break;
@@ -275,9 +264,7 @@ double HierarchicalSolver::measure(const SolverJob& job) {
 // what each has to do with it. Returns whether there were any.
 bool HierarchicalSolver::refine(const SolverJob& job) {
     Elements& elements = job.elements;
-    const auto area_of = [&](NodeId id) {
-        return static_cast<double>(is_cluster(id) ? clusters_.clusters[id & ~kClusterBit].area : elements[id].area);
-    };
+    const auto area_of = [&](NodeId id) { return static_cast<double>(clusters_.area(elements, id)); };
     const uint32_t old_size = elements.size();
     const double least = tolerance_ * tolerance_ * elements.area() / static_cast<double>(links_.size() + old_size);
     // What to do about a link: divide its receiver or its source, whichever its error is owed to and can be divided.
@@ -308,12 +295,11 @@ bool HierarchicalSolver::refine(const SolverJob& job) {
         for (size_t l = begin; l < end; ++l) parts[l] = part_of(links_[l]);
     });
 
-    // New elements first, in the order of the links.
+    // Elements are divided in their order and in that of the links, by one thread: their numbers are always the same.
     std::vector<Link> kept, fresh;
     kept.reserve(links_.size());
     for (uint32_t i = 0; i < old_size; ++i)
         if (is_uneven(i)) elements.divide(i);
-    std::vector<NodeId> below;
     for (size_t l = 0; l < links_.size(); ++l) {
         const Link& link = links_[l];
         if (parts[l] == Part::none) {
@@ -323,8 +309,8 @@ bool HierarchicalSolver::refine(const SolverJob& job) {
         const bool by_receiver = parts[l] == Part::receiver;
         const NodeId split = by_receiver ? link.receiver : link.source;
         if (!is_cluster(split) && elements[split].leaf()) elements.divide(split);
-        children(elements, split, below);
-        for (const NodeId part : below) {
+        const Children below = children(elements, split);
+        for (const NodeId part : std::span(below.ids, below.count)) {
             const Link next = by_receiver ? Link{part, link.source} : Link{link.receiver, part};
             if (is_cluster(next.receiver) || is_cluster(next.source) || may_see(elements, next.receiver, next.source))
                 fresh.push_back(next);
@@ -351,15 +337,13 @@ bool HierarchicalSolver::refine(const SolverJob& job) {
 bool HierarchicalSolver::step(const SolverJob& job) {
     if (!begun_) {
         if (!begin(job)) return true;
-    } else {
-        const double squared_error = measure(job);
-        if (std::sqrt(squared_error) <= tolerance_ || links_.size() > kMostLinks || !refine(job)) return job.cancelled;
+    } else if (job.statistics.residual <= tolerance_ || links_.size() > kMostLinks || !refine(job)) {
+        return job.cancelled;
     }
     solve(job);
     ++job.statistics.steps;
     job.statistics.links = links_.size();
-    const double squared_error = measure(job);
-    job.statistics.residual = std::sqrt(squared_error);
+    job.statistics.residual = std::sqrt(measure(job));
     return job.statistics.residual > tolerance_ && links_.size() <= kMostLinks;
 }
 
@@ -370,9 +354,7 @@ void HierarchicalSolver::links(const Elements& elements, std::vector<ElementLink
                           link.factor,
                           {}};
         const NodeId ends[2] = {link.receiver, link.source};
-        for (int k = 0; k < 2; ++k)
-            shown.ends[k] =
-                is_cluster(ends[k]) ? clusters_.clusters[ends[k] & ~kClusterBit].centre : elements[ends[k]].centre;
+        for (int k = 0; k < 2; ++k) shown.ends[k] = clusters_.centre(elements, ends[k]);
         out.push_back(shown);
     }
 }

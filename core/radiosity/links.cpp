@@ -29,7 +29,7 @@ uint64_t LinkEvaluator::evaluate(std::span<Link> links) {
 // Point k of a receiver: the middle of a quarter, or of one of four roots of a cluster by area.
 LinkEvaluator::Place LinkEvaluator::receiver_place(NodeId node, uint32_t k) const {
     if (is_cluster(node)) {
-        const ElementCluster& cluster = clusters_.clusters[node & ~kClusterBit];
+        const ElementCluster& cluster = clusters_.of(node);
         const uint32_t root = clusters_.root_at(cluster, (static_cast<float>(k) + 0.5f) / kLinkPoints);
         return {elements_[root].centre, elements_.normal(root), elements_.facet_of(root).slot};
     }
@@ -40,7 +40,7 @@ LinkEvaluator::Place LinkEvaluator::receiver_place(NodeId node, uint32_t k) cons
 // A point of the k-th quarter of a source.
 LinkEvaluator::Place LinkEvaluator::source_place(NodeId node, uint32_t k, float u, float v) const {
     if (is_cluster(node)) {
-        const ElementCluster& cluster = clusters_.clusters[node & ~kClusterBit];
+        const ElementCluster& cluster = clusters_.of(node);
         const uint32_t root = clusters_.root_at(cluster, (static_cast<float>(k) + u) / kRaysOfLinkPoint);
         return {elements_.point_in(root, u, v), elements_.normal(root), elements_.facet_of(root).slot};
     }
@@ -58,7 +58,7 @@ double LinkEvaluator::factor_at(const Place& place, NodeId source) {
         if (polygon_of_ != source) elements_.corners(polygon_of_ = source, polygon_);
         return point_to_polygon(Vec3d(place.point), Vec3d(place.normal), polygon_);
     }
-    const ElementCluster& cluster = clusters_.clusters[source & ~kClusterBit];
+    const ElementCluster& cluster = clusters_.of(source);
     double sum = 0;
     for (uint32_t k = 0; k < kRaysOfLinkPoint; ++k) {
         const Place of = source_place(source, k, 0.5f, 0.5f);
@@ -72,25 +72,12 @@ double LinkEvaluator::factor_at(const Place& place, NodeId source) {
     return sum * static_cast<double>(cluster.area) / kRaysOfLinkPoint;
 }
 
-float LinkEvaluator::source_area(NodeId node) const {
-    return is_cluster(node) ? clusters_.clusters[node & ~kClusterBit].area : elements_[node].area;
-}
-
 // A bound whatever way the surfaces of a cluster are turned: a source that fills as much of the sky as it can.
 float LinkEvaluator::greatest_factor(const Link& link) const {
-    Vec3 centres[2];
-    float radii[2], area = 0;
-    const NodeId ends[2] = {link.receiver, link.source};
-    for (int k = 0; k < 2; ++k) {
-        if (is_cluster(ends[k])) {
-            const ElementCluster& cluster = clusters_.clusters[ends[k] & ~kClusterBit];
-            centres[k] = cluster.centre, radii[k] = cluster.radius, area = cluster.area;
-        } else {
-            centres[k] = elements_[ends[k]].centre, radii[k] = elements_.radius(ends[k]),
-            area = elements_[ends[k]].area;
-        }
-    }
-    const float gap = (centres[1] - centres[0]).length() - radii[0] - radii[1];
+    const NodeId receiver = link.receiver, source = link.source;
+    const float gap = (clusters_.centre(elements_, source) - clusters_.centre(elements_, receiver)).length() -
+                      clusters_.radius(elements_, receiver) - clusters_.radius(elements_, source),
+                area = clusters_.area(elements_, source);
     return gap > 0 ? std::min(1.0f, area / (std::numbers::pi_v<float> * gap * gap)) : 1;
 }
 
@@ -128,7 +115,7 @@ uint64_t LinkEvaluator::group(std::span<Link> links) {
                 const Vec3 way = to.point - place.point;
                 const float d2 = std::max(way.length2(), 1e-37f);
                 weights[lane] = std::max(way.dot(place.normal), 0.0f) * std::max(-way.dot(to.normal), 0.0f) /
-                                (d2 * std::max(d2, source_area(link.source) / kRaysOfLinkPoint));
+                                (d2 * std::max(d2, clusters_.area(elements_, link.source) / kRaysOfLinkPoint));
                 if (weights[lane] > 0) ways_.set(lane, place.slot, place.point, place.normal, to.point);
             }
         }

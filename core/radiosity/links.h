@@ -35,7 +35,6 @@ class LinkEvaluator {
     Place receiver_place(NodeId node, uint32_t k) const;
     Place source_place(NodeId node, uint32_t k, float u, float v) const;
     double factor_at(const Place& place, NodeId source);
-    float source_area(NodeId node) const;
     float greatest_factor(const Link& link) const;
     float unseen_share(const Link& link) const;
     uint64_t group(std::span<Link> links);

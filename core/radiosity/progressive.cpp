@@ -13,10 +13,6 @@ namespace {
 
 constexpr double kSolved = 1e-3;  // the share of the power that is still unshot
 
-double power(const Vec3d& radiosity) {
-    return 0.2126 * radiosity.x + 0.7152 * radiosity.y + 0.0722 * radiosity.z;
-}
-
 class ProgressiveSolver : public Solver {
   public:
     bool step(const SolverJob& job) override;
@@ -107,9 +103,9 @@ bool ProgressiveSolver::measure(const SolverJob& job) const {
     }
     for (int c = 0; c < 3 && area > 0; ++c)
         solution.ambient[c] = unshot[c] / area / std::max(1 - reflectance[c] / area, 1e-3);
-    job.statistics.residual = power(all) > 0 ? power(unshot) / power(all) : 0;
+    job.statistics.residual = brightness(all) > 0 ? brightness(unshot) / brightness(all) : 0;
     const double tolerance = job.settings.radiosity.tolerance;
-    return tolerance > 0 ? power(unshot) > tolerance * area : job.statistics.residual > kSolved;
+    return tolerance > 0 ? brightness(unshot) > tolerance * area : job.statistics.residual > kSolved;
 }
 
 bool ProgressiveSolver::step(const SolverJob& job) {
@@ -120,7 +116,7 @@ bool ProgressiveSolver::step(const SolverJob& job) {
     if (order == RadiositySettings::Order::sorted) {
         double most = -1;
         for (const uint32_t patch : patches_) {
-            const double unshot = power(unshot_of(job, patch)) * static_cast<double>(job.elements[patch].area);
+            const double unshot = brightness(unshot_of(job, patch)) * static_cast<double>(job.elements[patch].area);
             if (unshot > most) most = unshot, chosen = patch;
         }
     }

@@ -71,7 +71,7 @@ void Radiosity::make_elements(std::atomic<bool>& cancelled) {
                patches = r.solver == RadiositySolver::progressive && r.patch_levels > 0;
     const float size = hierarchical ? 0 : std::ldexp(r.element_size, static_cast<int>(patches ? r.patch_levels : 0));
     auto elements = std::make_shared<Elements>(snapshot_, size, hierarchical || patches);
-    const LightingJob job{*elements, settings.illumination, settings.seed, 4, &cancelled, &statistics_.rays};
+    const LightingJob job{*elements, settings.illumination, settings.seed, &cancelled, &statistics_.rays};
     add_sides(*elements, job);
     for (uint32_t level = 0, first = 0; patches && level < r.patch_levels; ++level) {
         const uint32_t end = elements->size();
@@ -113,13 +113,14 @@ bool Radiosity::advance(uint32_t steps, const RenderEvents& events, std::atomic<
     return run(events, cancelled, [&] {
         if (!elements_) make_elements(cancelled);
         const uint32_t most = settings.radiosity.iterations;
-        if (steps > 0 || most == 0 || statistics_.steps < most) vertices_.reset();
+        const uint32_t before = elements_ ? elements_->size() : 0;
         for (uint32_t k = 0; (steps == 0 || k < steps) && !solved_ && !cancelled; ++k) {
             if (steps == 0 && most > 0 && statistics_.steps >= most) break;
             fraction_ = most > 0 ? static_cast<double>(statistics_.steps) / most : 0;
             const SolverJob job{*elements_, solution_, settings, statistics_, cancelled, fraction_};
             solved_ = !solver_->step(job) && !cancelled;
         }
+        if (elements_ && elements_->size() != before) vertices_.reset();  // they depend on nothing else
     });
 }
 

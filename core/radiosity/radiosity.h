@@ -3,7 +3,6 @@
 
 #include <memory>
 #include <mutex>
-#include <string>
 
 #include "film/tiles.h"
 #include "radiosity/solver.h"

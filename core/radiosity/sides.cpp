@@ -4,15 +4,12 @@
 #include <numeric>
 
 #include "base/parallel.h"
-#include "film/pixel_random.h"
-#include "geometry/embree.h"
 #include "radiosity/element_rays.h"
 
 namespace trp {
 namespace {
 
 constexpr uint32_t kRays = 16;  // from each side
-constexpr uint32_t kNone = ~0u;
 
 // Disjoint sets (Tarjan 1975), joined in one thread and so the same each time.
 class Regions {
@@ -37,29 +34,18 @@ void add_sides(Elements& elements, const LightingJob& job) {
     // All sides for the time being, each with its light: two elements to a facet.
     Elements trial = elements.whole_facets();
     std::vector<ElementLight> light(trial.size());
-    LightingJob look{trial, job.illumination, job.seed, 4, job.cancelled, job.rays};
+    const LightingJob look{trial, job.illumination, job.seed, job.cancelled, job.rays};
     light_elements(look, 0, light);
 
-    std::vector<uint32_t> met(size_t{2} * count * kRays, kNone);
+    std::vector<uint32_t> met(size_t{2} * count * kRays, kNoElement);
     parallel_ranges(size_t{2} * count, 64, [&](size_t begin, size_t end) {
         ElementTracer tracer(trial);
         std::vector<ElementRay> rays;
         std::vector<ElementHit> hits;
-        alignas(64) uint32_t keys[kBatch], indices[kBatch];
-        alignas(64) Lanes u, v, s, t;
         for (size_t side = begin; side < end && !*job.cancelled; ++side) {
             const auto element = static_cast<uint32_t>(side);
-            std::fill_n(keys, kBatch, element * 0x9E3779B9u);
-            std::iota(indices, indices + kBatch, 0u);
-            random_pair_of(keys, indices, 0, u, v);
-            random_pair_of(keys, indices, 1, s, t);
-            const Vec3 normal = trial.normal(element);
-            rays.clear();
+            make_hemisphere_rays(trial, element, element * 0x9E3779B9u, 0, kRays, rays);
             hits.clear();
-            for (uint32_t k = 0; k < kRays; ++k) {
-                const Vec3 p = trial.point_in(element, s[k], t[k]);
-                rays.push_back({p + normal * clearance(p), cosine_direction(normal, u[k], v[k]), k});
-            }
             *job.rays += tracer.trace(rays, hits);
             for (const ElementHit& hit : hits)
                 if (hit.element != kNoElement) met[side * kRays + hit.id] = hit.element;
@@ -75,7 +61,7 @@ void add_sides(Elements& elements, const LightingJob& job) {
         if (!exists(side)) continue;
         for (uint32_t k = 0; k < kRays; ++k) {
             const uint32_t other = met[size_t{side} * kRays + k];
-            if (other == kNone || !exists(other)) continue;
+            if (other == kNoElement || !exists(other)) continue;
             sees[side] = 1;
             regions.join(side, other);
         }

@@ -12,6 +12,11 @@
 
 namespace trp {
 
+// As luminance(), of what solvers keep.
+inline double brightness(const Vec3d& v) {
+    return 0.2126 * v.x + 0.7152 * v.y + 0.0722 * v.z;
+}
+
 // By element, divided ones too, whose values are means of their parts.
 struct Solution {
     std::vector<ElementLight> light;
@@ -40,7 +45,7 @@ struct SolverJob {
     std::atomic<double>& fraction;  // of the step, 0 to 1
 
     LightingJob lighting() const {
-        return {elements, settings.illumination, settings.seed, 4, &cancelled, &statistics.rays};
+        return {elements, settings.illumination, settings.seed, &cancelled, &statistics.rays};
     }
 };
 

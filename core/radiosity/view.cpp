@@ -9,7 +9,7 @@
 namespace trp {
 namespace {
 
-constexpr float kPerRadiance = std::numbers::pi_v<float>;
+constexpr float kPi = std::numbers::pi_v<float>;
 
 // Blue, cyan, green, yellow and red in equal steps.
 Vec3 false_color(float share) {
@@ -72,7 +72,7 @@ bool radiosity_view(RenderJob& job, const RenderEvents& events) {
                     value = settings.smooth ? solution.vertices->interpolate(*solution.elements, place,
                                                                              solution.at_vertices, solution.leaves)
                                             : solution.leaves[place.element];
-                Vec3 shown = value / kPerRadiance;
+                Vec3 shown = value / kPi;
                 if (settings.view == RadiositySettings::View::shaded)
                     shown = coefficients.emission.get(i) + coefficients.diffuse.get(i) * shown;
                 else if (settings.view == RadiositySettings::View::false_color)
