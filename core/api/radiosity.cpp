@@ -186,7 +186,7 @@ TrpStatus trp_radiosity_info(TrpRadiosity* radiosity, TrpRadiosityInfo* info) {
             out.vertex_count = static_cast<uint32_t>(vertices.vertices().size());
             for (const uint32_t leaf : radiosity->leaves) {
                 out.corner_count += static_cast<uint32_t>(vertices.around(leaf).size());
-                const double area = data.elements()[leaf].area;
+                const double area = data.elements()[leaf].exposed_area();
                 out.area += area;
                 const Vec3d power = data.solution().radiosity(leaf) * area,
                             unshot =

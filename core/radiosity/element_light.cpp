@@ -6,12 +6,13 @@
 
 #include "base/parallel.h"
 #include "film/pixel_random.h"
+#include "radiosity/linear.h"
 #include "shading/shadow_rays.h"
 
 namespace trp {
 namespace {
 
-constexpr uint32_t kSide = 4, kPlaces = kSide * kSide;  // of an element, that are looked at
+constexpr uint32_t kSide = 4, kPlaces = kSide * kSide;  // of an element
 
 // One to a thread.
 struct Scratch {
@@ -23,12 +24,11 @@ struct Scratch {
     alignas(64) uint32_t keys[kBatch], indices[kBatch];
 };
 
-// Place number k of an element, at the middle of a cell of its grid.
+// Place number k of an element.
 void put(const LightingJob& job, uint32_t element, uint32_t k, int lane, Scratch& w) {
     const Elements& elements = job.elements;
     const Facet& facet = elements.facet_of(element);
-    const auto [s, t] = elements.coordinates_in(element, (static_cast<float>(k % kSide) + 0.5f) / kSide,
-                                                (static_cast<float>(k / kSide) + 0.5f) / kSide);
+    const auto [s, t] = elements.place_in(element, k);
     Points& points = w.points;
     points.slot[lane] = facet.slot;
     elements.locate(facet, s, t, points.triangle[lane], points.b1[lane], points.b2[lane]);
@@ -74,14 +74,22 @@ void add_lamps(const LightingJob& job, Scratch& w) {
     }
 }
 
-// The means of an element's places, which stand in so many lanes from `first` on.
-ElementLight mean(int first, const Scratch& w) {
+// The means of an element's places that are not covered, which stand in so many lanes from `first` on.
+ElementLight mean(const Elements& elements, uint32_t element, int first, const Scratch& w) {
+    const PlaneAxes axes = axes_of(elements.facet_of(element));
+    const uint16_t covered = elements[element].covered;
     ElementLight out;
-    float bright = 0, squares = 0;
+    if (covered == kAllCovered) return out;
+    const float share = 1.0f / static_cast<float>(kPlaces - static_cast<uint32_t>(std::popcount(covered)));
+    double squares = 0;
+    Moments places;
+    Vec3 by_x(0, 0, 0), by_y(0, 0, 0);
+    float x_mean = 0, y_mean = 0;
     for (int k = 0; k < static_cast<int>(kPlaces); ++k) {
         const int i = first + k;
         if (w.points.slot[i] == kNoSlot) continue;
-        const float alpha = w.coefficients.alpha[i], share = 1.0f / kPlaces;
+        if (covered >> k & 1) continue;
+        const float alpha = w.coefficients.alpha[i];
         const Vec3 reflectance = w.coefficients.diffuse.get(i) * alpha;
         for (int c = 0; c < 3; ++c) {
             out.clamped |= reflectance[c] > kGreatestReflectance;
@@ -90,10 +98,25 @@ ElementLight mean(int first, const Scratch& w) {
         out.emission += w.coefficients.emission.get(i) * (share * alpha * std::numbers::pi_v<float>);
         const Vec3 irradiance = w.irradiance.get(i);
         out.irradiance += irradiance * share;
-        bright += luminance(irradiance) * share;
-        squares += luminance(irradiance) * luminance(irradiance) * share;
+        squares += static_cast<double>(luminance(irradiance) * luminance(irradiance) * share);
+        const Vec3 from_middle = w.points.position.get(i) - elements[element].centre;
+        const float x = axes.x.dot(from_middle), y = axes.y.dot(from_middle);
+        places.add(x, y, share);
+        x_mean += share * x;
+        y_mean += share * y;
+        by_x += irradiance * (share * x);
+        by_y += irradiance * (share * y);
     }
-    out.unevenness = std::sqrt(std::max(squares - bright * bright, 0.0f));
+    // The line of least squares.
+    places.add(x_mean, y_mean, -1);
+    by_x -= out.irradiance * x_mean;
+    by_y -= out.irradiance * y_mean;
+    const Moments fit = places.inverse();
+    out.irradiance_x = by_x * static_cast<float>(fit.xx) + by_y * static_cast<float>(fit.xy);
+    out.irradiance_y = by_x * static_cast<float>(fit.xy) + by_y * static_cast<float>(fit.yy);
+    const double bright = luminance(out.irradiance),
+                 explained = places.of(luminance(out.irradiance_x), luminance(out.irradiance_y));
+    out.unevenness = static_cast<float>(std::sqrt(std::max(squares - bright * bright - explained, 0.0)));
     return out;
 }
 
@@ -116,7 +139,9 @@ void light_elements(const LightingJob& job, uint32_t first, std::span<ElementLig
                                w->points);
             evaluate(job.elements.snapshot(), w->points, w->coefficients, w->program);
             add_lamps(job, *w);
-            for (size_t k = 0; k < count; ++k) out[from + k] = mean(static_cast<int>(k * kPlaces), *w);
+            for (size_t k = 0; k < count; ++k)
+                out[from + k] =
+                    mean(job.elements, first + static_cast<uint32_t>(from + k), static_cast<int>(k * kPlaces), *w);
         }
     });
 }

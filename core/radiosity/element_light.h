@@ -11,11 +11,12 @@
 namespace trp {
 
 struct ElementLight {
-    Vec3 emission{0, 0, 0};     // radiosity, W/m²: π times the radiance I_E
-    Vec3 reflectance{0, 0, 0};  // K_D, times alpha, below 1
-    Vec3 irradiance{0, 0, 0};   // of lamps, W/m²
-    float unevenness = 0;       // the standard deviation of the irradiance over the element, as luminance
-    bool clamped = false;       // a reflectance of 1 or more was met
+    Vec3 emission{0, 0, 0};                             // radiosity, W/m²: π times the radiance I_E
+    Vec3 reflectance{0, 0, 0};                          // K_D, times alpha, below 1
+    Vec3 irradiance{0, 0, 0};                           // of lamps, W/m²
+    Vec3 irradiance_x{0, 0, 0}, irradiance_y{0, 0, 0};  // what it changes by per metre along the facet's PlaneAxes
+    float unevenness = 0;  // the standard deviation of the irradiance from that over the element, as luminance
+    bool clamped = false;  // a reflectance of 1 or more was met
 };
 
 struct LightingJob {

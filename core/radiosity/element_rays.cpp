@@ -76,7 +76,7 @@ void ElementTracer::batch(const ElementRay* rays, int count, std::vector<Element
             const int i = first + k;
             points_.slot[i] = kNoSlot;
             if (packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) {
-                hits.push_back({rays[i].id, kNoElement, rays[i].weight});
+                hits.push_back({rays[i].id, kNoElement, rays[i].weight, true});
                 continue;
             }
             const unsigned instance = packet.hit.instID[0][k];

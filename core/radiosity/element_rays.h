@@ -18,10 +18,12 @@ struct ElementRay {
     uint32_t turns = 0;  // surfaces that it has passed
 };
 
-// `element`: kNoElement where the ray left the scene. A ray may meet several, or none of which it is known.
+// `element`: kNoElement where the ray left the scene, or met a surface's side that takes no part. A ray may meet
+// several, or none of which it is known.
 struct ElementHit {
     uint32_t id, element;
     Vec3 weight;
+    bool left = false;  // the scene
 };
 
 // One to a thread.

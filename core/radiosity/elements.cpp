@@ -25,19 +25,16 @@ bool is_plane_and_convex(std::span<const Vec3> p, const Vec3& normal) {
 }
 
 // Coordinates of the cells that a division makes of one.
-std::array<Element, 4> quarters(const Element& e, Facet::Shape shape) {
-    const float ds = e.ds / 2, dt = e.dt / 2;
-    std::array<Element, 4> out;
-    for (Element& child : out) {
-        child.facet = e.facet;
-        child.side = e.side;
-        child.ds = ds;
-        child.dt = dt;
-    }
-    const bool quad = shape == Facet::Shape::quad;
-    const float at[4][2] = {{0, 0}, {1, 0}, {0, 1}, {1, 1}};
-    for (int k = 0; k < 4; ++k) out[k].s = e.s + at[k][0] * ds, out[k].t = e.t + at[k][1] * dt;
-    if (!quad) out[3].ds = -ds, out[3].dt = -dt;  // the one in the middle
+Element part(const Element& e, Facet::Shape shape, uint32_t number) {
+    Element out;
+    out.facet = e.facet;
+    out.side = e.side;
+    out.covered = e.covered;
+    out.ds = e.ds / 2;
+    out.dt = e.dt / 2;
+    out.s = e.s + (number % 2 ? out.ds : 0);
+    out.t = e.t + (number / 2 ? out.dt : 0);
+    if (shape == Facet::Shape::triangle && number == 3) out.ds = -out.ds, out.dt = -out.dt;  // the one in the middle
     return out;
 }
 
@@ -224,11 +221,18 @@ void Elements::finish(Element& e) const {
 void Elements::divide(uint32_t number) {
     if (elements_.size() + 4 > kMostElements)
         fail(TRP_ERROR_MEMORY, "the elements would be more than {}", kMostElements);
-    elements_[number].first_child = size();
-    for (Element child : quarters(elements_[number], facet_of(number).shape)) {
-        finish(child);
-        elements_.push_back(child);
-    }
+    const uint32_t first = size();
+    for (uint32_t k = 0; k < 4; ++k) elements_.push_back(quarter(number, k));
+    elements_[number].first_child = first;
+}
+
+Element Elements::quarter(uint32_t element, uint32_t number) const {
+    const Element& e = elements_[element];
+    const Facet::Shape shape = facets_[e.facet].shape;
+    if (shape == Facet::Shape::polygon) return e;
+    Element out = part(e, shape, number);
+    finish(out);
+    return out;
 }
 
 void Elements::merge(uint32_t size) {
@@ -243,15 +247,24 @@ Vec3 Elements::point(const Facet& facet, float s, float t) const {
     return (p[0] * (1 - s) + p[1] * s) * (1 - t) + (p[3] * (1 - s) + p[2] * s) * t;
 }
 
-std::array<float, 2> Elements::coordinates_in(uint32_t element, float u, float v) const {
-    const Element& e = elements_[element];
+std::array<float, 2> Elements::coordinates_in(const Element& e, float u, float v) const {
     if (facets_[e.facet].shape != Facet::Shape::triangle) return {e.s + u * e.ds, e.t + v * e.dt};
     const float root = std::sqrt(u);
     return {e.s + root * (1 - v) * e.ds, e.t + root * v * e.dt};
 }
 
-Vec3 Elements::point_in(uint32_t element, float u, float v) const {
-    const Facet& facet = facet_of(element);
+std::array<float, 2> Elements::place_in(uint32_t element, uint32_t number) const {
+    const Element& e = elements_[element];
+    const Facet::Shape shape = facets_[e.facet].shape;
+    if (shape == Facet::Shape::polygon)
+        return {(static_cast<float>(number % 4) + 0.5f) / 4, (static_cast<float>(number / 4) + 0.5f) / 4};
+    const Element cell = part(part(e, shape, number / 4), shape, number % 4);
+    const float middle = shape == Facet::Shape::triangle ? 1.0f / 3 : 0.5f;
+    return {cell.s + middle * cell.ds, cell.t + middle * cell.dt};
+}
+
+Vec3 Elements::point_in(const Element& element, float u, float v) const {
+    const Facet& facet = facets_[element.facet];
     if (facet.shape != Facet::Shape::polygon) {
         const auto [s, t] = coordinates_in(element, u, v);
         return point(facet, s, t);

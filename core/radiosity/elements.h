@@ -7,6 +7,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <span>
 #include <vector>
 
@@ -15,6 +16,7 @@
 namespace trp {
 
 inline constexpr uint32_t kNoElement = ~0u;
+inline constexpr uint16_t kAllCovered = 0xFFFF;
 
 struct Facet {
     enum class Shape : uint8_t { triangle, quad, polygon };
@@ -38,6 +40,11 @@ struct Element {
     float area = 0;
     Vec3 centre{0, 0, 0};
     uint8_t side = 0;
+    // Of its 16 places, a bit to each: those that lie within or under another body, where no light comes and nobody
+    // sees. Neither none nor all in an element that is new: it has still to be looked at (find_covered()).
+    uint16_t covered = 0;
+    float exposed() const { return 1 - static_cast<float>(std::popcount(covered)) / 16; }  // share of the area
+    double exposed_area() const { return static_cast<double>(area * exposed()); }
     bool leaf() const { return first_child == kNoElement; }
 };
 
@@ -63,6 +70,9 @@ class Elements {
     void add_side(uint32_t facet, int side);
     // Divides a leaf in four.
     void divide(uint32_t element);
+    // One of four parts of an element, as divide() makes them; of a polygon, all of it.
+    Element quarter(uint32_t element, uint32_t number) const;
+    void set_covered(uint32_t element, uint16_t covered) { elements_[element].covered = covered; }
     // Takes back the divisions that made elements from number `size` on.
     void merge(uint32_t size);
 
@@ -70,10 +80,14 @@ class Elements {
     Vec3 point(const Facet& facet, float s, float t) const;
     // The facet's coordinates of a point of an element that is given by coordinates of its own, as in point_in(); those
     // themselves in a polygon.
-    std::array<float, 2> coordinates_in(uint32_t element, float u, float v) const;
+    std::array<float, 2> coordinates_in(const Element& element, float u, float v) const;
+    // The facet's coordinates of one of 16 places of an element, the middles of its quarters' quarters: number 4 i + j
+    // in quarter i; of a polygon, a point for each.
+    std::array<float, 2> place_in(uint32_t element, uint32_t number) const;
     // A point of an element by coordinates of its own, both in [0, 1]; uniform in area where u and v are, but for
     // skewed quads, which are nearly so.
-    Vec3 point_in(uint32_t element, float u, float v) const;
+    Vec3 point_in(const Element& element, float u, float v) const;
+    Vec3 point_in(uint32_t element, float u, float v) const { return point_in(elements_[element], u, v); }
     float radius(uint32_t element) const;  // of a ball about its centre that holds it
     // Three or four corners, or those of a polygon, counter-clockwise about the element's normal.
     void corners(uint32_t element, std::vector<Vec3d>& out) const;

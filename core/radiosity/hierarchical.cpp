@@ -1,24 +1,29 @@
 // Hierarchical radiosity (Hanrahan, Salzman and Aupperle, "A Rapid Hierarchical Radiosity Algorithm", 1991): light goes
 // over links between nodes of quad-trees, each as high up as the tolerance allows, and clusters above them.
 //
-// A link's error is what its irradiance differs by over the receiver, what the source's radiosity differs by within it,
-// and for clusters, whose light goes no certain way, all that it carries; times the receiver's reflectance. The squares
-// of all errors that come to an element are added up, and over the scene weighed by area. That is an estimate of the
-// solution's error, in W/m², and each step refines the links that have more than an equal share of what the tolerance
-// allows, along with the elements on which lamps shine unevenly, until it is below the tolerance. As light is gathered
-// between the steps, links are refined for what they carry then (multigridding).
+// Light is linear over elements (Linear). A link's error is what no line follows of its irradiance over the receiver
+// and of the source's radiosity within it, and for clusters, whose light goes no certain way, all that it carries;
+// times the receiver's reflectance. The squares of all errors that come to an element are added up, and over the scene
+// weighed by area. That is an estimate of the solution's error, in W/m², and each step refines the links that have more
+// than an equal share of what the tolerance allows, along with the elements on which lamps shine unevenly, until it is
+// below the tolerance. As light is gathered between the steps, links are refined for what they carry then
+// (multigridding).
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "base/parallel.h"
+#include "radiosity/covered.h"
+#include "radiosity/linear.h"
 #include "radiosity/links.h"
 #include "radiosity/solver.h"
 
 namespace trp {
 namespace {
 
-constexpr size_t kGrain = 1024;      // links that a thread takes at a time
+constexpr size_t kGrain = 1024;  // links that a thread takes at a time
+constexpr double kCoherent = 0.5;
 constexpr double kUnevenness = 0.5;  // of a lamp's light over an element, what is left as an error
 constexpr uint32_t kMostSweeps = 500;
 constexpr size_t kMostLinks = 1 << 18;    // then the solution is left as it is; its residual says how good
@@ -40,11 +45,15 @@ class HierarchicalSolver : public Solver {
 
   private:
     struct Node {
-        Vec3d radiosity{0, 0, 0}, gathered{0, 0, 0};
-        float variance = 0;     // of the brightness of its parts
+        Linear radiosity, gathered;
+        PlaneCell cell;         // of an element
+        float x = 0, y = 0;     // from the middle of the element above, along the facet's axes
+        float variance = 0;     // of the brightness of its parts, from the linear one
         float reflectance = 0;  // the mean, of the brightest colour
         float error = 0;        // of what its leaves give, the mean of its squares
-        float own_error = 0;    // of what its own links bring, squared
+        // Of what its own links bring: the squares of what is wrong by chance, and what is wrong the same way.
+        float own_error = 0, own_coherent = 0;
+        float coherent = 0;  // with that of the nodes above
     };
 
     bool begin(const SolverJob& job);
@@ -52,11 +61,18 @@ class HierarchicalSolver : public Solver {
     void evaluate(const SolverJob& job, std::vector<Link>& links) const;
     void solve(const SolverJob& job);
     void gather();
-    void push_pull(const SolverJob& job, NodeId id, const Vec3d& above, double error_above);
-    // Irradiance that a link may be wrong by, for what of it differs over the receiver and within the source.
+    // Of nodes above, as Node has them.
+    struct ErrorAbove {
+        double squares = 0, coherent = 0;
+    };
+    void push_pull(const SolverJob& job, NodeId id, const Linear& above, ErrorAbove error);
+    void set_leaf(const SolverJob& job, uint32_t leaf, Linear arriving, double error);
+    void add_nodes(const SolverJob& job);
+    // Irradiance that a link may be wrong by: for what no line follows over the receiver and within the source, and for
+    // what of the source is hidden, which is likely darker than the rest, so that many links err the same way.
     struct LinkError {
-        double over_receiver, within_source;
-        double sum() const { return over_receiver + within_source; }
+        double over_receiver, within_source, coherent;
+        double squares() const { return (over_receiver + within_source) * (over_receiver + within_source); }
     };
     LinkError link_error(const Link& link) const;
     double measure(const SolverJob& job);
@@ -115,7 +131,8 @@ bool HierarchicalSolver::begin(const SolverJob& job) {
     const Elements& elements = job.elements;
     clusters_ = make_element_clusters(elements);
     cluster_nodes_.assign(clusters_.clusters.size(), {});
-    element_nodes_.assign(elements.size(), {});
+    element_nodes_.clear();
+    add_nodes(job);
     tops_.clear();
     if (!clusters_.clusters.empty())
         tops_.push_back(kClusterBit);
@@ -128,6 +145,7 @@ bool HierarchicalSolver::begin(const SolverJob& job) {
     evaluate(job, links);
     if (job.cancelled) return false;
     links_ = std::move(links);
+    job.solution.slopes.assign(elements.size(), {});
     begun_ = true;
     return true;
 }
@@ -147,9 +165,17 @@ void HierarchicalSolver::evaluate(const SolverJob& job, std::vector<Link>& links
 void HierarchicalSolver::gather() {
     const auto gather_node = [&](NodeId id) {
         const size_t at = place(id);
-        Vec3d sum(0, 0, 0);
-        for (size_t l = first_link_[at]; l < first_link_[at + 1]; ++l)
-            sum += Vec3d(links_[l].factor) * node(links_[l].source).radiosity;
+        Linear sum;
+        for (size_t l = first_link_[at]; l < first_link_[at + 1]; ++l) {
+            const Link& link = links_[l];
+            const Linear& source = node(link.source).radiosity;
+            const Vec3d tint(link.tint);
+            Vec3d* const rows[3] = {&sum.mean, &sum.x, &sum.y};
+            for (size_t r = 0; r < 3; ++r)
+                *rows[r] += tint * (source.mean * static_cast<double>(link.transfer[3 * r]) +
+                                    source.x * static_cast<double>(link.transfer[3 * r + 1]) +
+                                    source.y * static_cast<double>(link.transfer[3 * r + 2]));
+        }
         node(id).gathered = sum;
     };
     parallel_ranges(cluster_nodes_.size(), 256, [&](size_t begin, size_t end) {
@@ -160,47 +186,115 @@ void HierarchicalSolver::gather() {
     });
 }
 
-// Irradiance goes down to the leaves, radiosity comes up as the mean by area, so that no power is lost.
-void HierarchicalSolver::push_pull(const SolverJob& job, NodeId id, const Vec3d& above, double error_above) {
+// The nodes of elements that have none yet.
+void HierarchicalSolver::add_nodes(const SolverJob& job) {
+    const Elements& elements = job.elements;
+    const size_t old_size = element_nodes_.size();
+    element_nodes_.resize(elements.size());
+    for (auto i = static_cast<uint32_t>(old_size); i < elements.size(); ++i)
+        element_nodes_[i].cell = plane_cell(elements, i);
+    for (uint32_t i = 0; i < elements.size(); ++i) {
+        const uint32_t first = elements[i].first_child;
+        if (first == kNoElement || first < old_size) continue;
+        const PlaneAxes axes = axes_of(elements.facet_of(i));
+        float x = 0, y = 0, exposed = 0;  // the middle is that of what is not covered
+        for (uint32_t k = first; k < first + 4; ++k) {
+            const Vec3 way = elements[k].centre - elements[i].centre;
+            element_nodes_[k].x = axes.x.dot(way);
+            element_nodes_[k].y = axes.y.dot(way);
+            const auto area = static_cast<float>(elements[k].exposed_area());
+            x += element_nodes_[k].x * area;
+            y += element_nodes_[k].y * area;
+            exposed += area;
+        }
+        if (!(exposed > 0)) continue;
+        x /= exposed, y /= exposed;
+        for (uint32_t k = first; k < first + 4; ++k) element_nodes_[k].x -= x, element_nodes_[k].y -= y;
+    }
+}
+
+// What a leaf gives for what arrives.
+void HierarchicalSolver::set_leaf(const SolverJob& job, uint32_t leaf, Linear arriving, double error) {
+    Solution& solution = job.solution;
+    const ElementLight& light = solution.light[leaf];
+    Node& n = element_nodes_[leaf];
+    solution.irradiance[leaf] = arriving.mean;
+    arriving += {Vec3d(light.irradiance), Vec3d(light.irradiance_x), Vec3d(light.irradiance_y)};
+    // No light falls below 0.
+    for (int c = 0; c < 3; ++c) {
+        const double fall = n.cell.fall(arriving.x[c], arriving.y[c]);
+        if (fall <= arriving.mean[c]) continue;
+        const double share = std::max(arriving.mean[c], 0.0) / fall;
+        arriving.x[c] *= share;
+        arriving.y[c] *= share;
+    }
+    solution.slopes[leaf] = {Vec3(arriving.x), Vec3(arriving.y)};
+    n.radiosity = {solution.radiosity(leaf), solution.reflected(leaf, arriving.x),
+                   solution.reflected(leaf, arriving.y)};
+    n.reflectance = std::max({light.reflectance.x, light.reflectance.y, light.reflectance.z});
+    // The lamps' light within the leaf, and the error of what it gathers.
+    const double uneven = kUnevenness * static_cast<double>(light.unevenness), reflectance = n.reflectance;
+    n.variance = static_cast<float>(reflectance * reflectance * uneven * uneven);
+    n.error = static_cast<float>(reflectance * reflectance * error) + n.variance;
+}
+
+// Irradiance goes down to the leaves, radiosity comes up as the linear function that is closest to that of the parts,
+// with their mean by area, so that no power is lost.
+void HierarchicalSolver::push_pull(const SolverJob& job, NodeId id, const Linear& above, ErrorAbove error) {
     Node& n = node(id);
-    const Vec3d irradiance = above + n.gathered;
-    const double error = error_above + static_cast<double>(n.own_error);
+    Linear irradiance = above;
+    irradiance += n.gathered;
+    error.squares += static_cast<double>(n.own_error);
+    error.coherent += static_cast<double>(n.own_coherent);
+    n.coherent = static_cast<float>(error.coherent);
     const Elements& elements = job.elements;
     Solution& solution = job.solution;
     if (!is_cluster(id) && elements[id].leaf()) {
-        solution.irradiance[id] = irradiance;
-        n.radiosity = solution.radiosity(id);
-        const Vec3& rho = solution.light[id].reflectance;
-        n.reflectance = std::max({rho.x, rho.y, rho.z});
-        n.variance = 0;
-        // The lamps' light within the leaf, and the error of what it gathers.
-        const double uneven = kUnevenness * static_cast<double>(solution.light[id].unevenness),
-                     reflectance = n.reflectance;
-        n.error = static_cast<float>(reflectance * reflectance * (error + uneven * uneven));
+        set_leaf(job, id, irradiance, error.squares + error.coherent * error.coherent);
         return;
     }
     const Children parts = children(elements, id);
     double area = 0, squares = 0, reflectance = 0, errors = 0;
-    Vec3d radiosity(0, 0, 0), arriving(0, 0, 0);
+    Linear sum;
+    Vec3d arriving(0, 0, 0);
     for (uint32_t k = 0; k < parts.count; ++k) {
         const NodeId child = parts.ids[k];
-        push_pull(job, child, irradiance, error);
-        const Node& part = node(child);
-        const double a = clusters_.area(elements, child);
-        const double bright = brightness(part.radiosity);
+        Node& part = node(child);
+        const double a = is_cluster(child) ? clusters_.area(elements, child) : elements[child].exposed_area(),
+                     x = part.x, y = part.y;
+        if (is_cluster(id)) {
+            push_pull(job, child, irradiance, error);
+        } else {
+            push_pull(job, child, {irradiance.mean + irradiance.x * x + irradiance.y * y, irradiance.x, irradiance.y},
+                      error);
+            const Moments& m = part.cell.moments;
+            const Linear& b = part.radiosity;
+            sum.x += (b.mean * x + b.x * m.xx + b.y * m.xy) * a;
+            sum.y += (b.mean * y + b.x * m.xy + b.y * m.yy) * a;
+            squares += a * m.of(brightness(b.x), brightness(b.y));
+            arriving += solution.irradiance[child] * a;
+        }
+        const double bright = brightness(part.radiosity.mean);
         area += a;
-        radiosity += part.radiosity * a;
+        sum.mean += part.radiosity.mean * a;
         squares += a * (bright * bright + static_cast<double>(part.variance));
         reflectance += a * static_cast<double>(part.reflectance);
         errors += a * static_cast<double>(part.error);
-        if (!is_cluster(id)) arriving += solution.irradiance[child] * a;
     }
-    n.radiosity = radiosity / area;
-    const double mean = brightness(n.radiosity);
-    n.variance = static_cast<float>(std::max(squares / area - mean * mean, 0.0));
+    if (!(area > 0)) return;
+    n.radiosity.mean = sum.mean / area;
+    const double mean = brightness(n.radiosity.mean);
+    double explained = mean * mean;
+    if (!is_cluster(id)) {
+        const Moments fit = n.cell.moments.inverse();
+        n.radiosity.x = (sum.x * fit.xx + sum.y * fit.xy) / area;
+        n.radiosity.y = (sum.x * fit.xy + sum.y * fit.yy) / area;
+        explained += n.cell.moments.of(brightness(n.radiosity.x), brightness(n.radiosity.y));
+        solution.irradiance[id] = arriving / area;
+    }
+    n.variance = static_cast<float>(std::max(squares / area - explained, 0.0));
     n.reflectance = static_cast<float>(reflectance / area);
     n.error = static_cast<float>(errors / area);
-    if (!is_cluster(id)) solution.irradiance[id] = arriving / area;
 }
 
 // Sweeps of gathering until nothing changes that would matter.
@@ -219,9 +313,9 @@ void HierarchicalSolver::solve(const SolverJob& job) {
         gather();
         double now = 0;
         for (const NodeId top : tops_) {
-            push_pull(job, top, Vec3d(0, 0, 0), 0);
+            push_pull(job, top, {}, {});
             const double area = clusters_.area(job.elements, top);
-            now += area * brightness(node(top).radiosity);
+            now += area * brightness(node(top).radiosity.mean);
         }
         if (std::abs(now - before) <= 1e-6 * now) break;
         before = now;
@@ -232,26 +326,28 @@ void HierarchicalSolver::solve(const SolverJob& job) {
 
 HierarchicalSolver::LinkError HierarchicalSolver::link_error(const Link& link) const {
     const Node& source = node(link.source);
-    return {static_cast<double>(link.spread) * brightness(source.radiosity),
-            luminance(link.factor) * std::sqrt(static_cast<double>(source.variance))};
+    const double within = luminance(link.factor()) * std::sqrt(static_cast<double>(source.variance));
+    return {static_cast<double>(link.spread) * brightness(source.radiosity.mean), within,
+            kCoherent * within * static_cast<double>(link.hidden)};
 }
 
 // The estimated mean square error of the solution, with the errors of all nodes.
 double HierarchicalSolver::measure(const SolverJob& job) {
     for (auto* nodes : {&cluster_nodes_, &element_nodes_})
-        for (Node& n : *nodes) n.own_error = 0;
+        for (Node& n : *nodes) n.own_error = n.own_coherent = 0;
     for (const Link& link : links_) {
-        const double error = link_error(link).sum();
-        node(link.receiver).own_error += static_cast<float>(error * error);
+        const LinkError error = link_error(link);
+        node(link.receiver).own_error += static_cast<float>(error.squares());
+        node(link.receiver).own_coherent += static_cast<float>(error.coherent);
     }
-    for (const NodeId top : tops_) push_pull(job, top, Vec3d(0, 0, 0), 0);
+    for (const NodeId top : tops_) push_pull(job, top, {}, {});
     double sum = 0, area = 0, power = 0;
     for (uint32_t i = 0; i < job.elements.size(); ++i) {
         if (!job.elements[i].leaf()) continue;
         const double a = job.elements[i].area;
         sum += a * static_cast<double>(element_nodes_[i].error);
         area += a;
-        power += a * brightness(element_nodes_[i].radiosity);
+        power += a * brightness(element_nodes_[i].radiosity.mean);
     }
     tolerance_ = job.settings.radiosity.tolerance;
     if (!(tolerance_ > 0)) tolerance_ = area > 0 ? 0.01 * power / area : 0;
@@ -260,49 +356,65 @@ double HierarchicalSolver::measure(const SolverJob& job) {
 
 // ------------------------------------------------------------------------------------------------------------ refining
 
-// The links and leaves that have more than an equal share of the error that is allowed, which is the sum over all of
-// what each has to do with it. Returns whether there were any.
+// Of shares of the squared error, the least of those to be refined, so that the rest is half of what is allowed
+// (Dörfler, "A Convergent Adaptive Algorithm for Poisson's Equation", 1996).
+double least_share(std::vector<double> shares, double allowed) {
+    std::sort(shares.begin(), shares.end());
+    double sum = 0;
+    for (const double share : shares)
+        if ((sum += share) > allowed / 2) return share;
+    return std::numeric_limits<double>::infinity();
+}
+
+// The links and leaves that the error is mostly owed to. Returns whether there were any.
 bool HierarchicalSolver::refine(const SolverJob& job) {
     Elements& elements = job.elements;
     const auto area_of = [&](NodeId id) { return static_cast<double>(clusters_.area(elements, id)); };
     const uint32_t old_size = elements.size();
-    const double least = tolerance_ * tolerance_ * elements.area() / static_cast<double>(links_.size() + old_size);
     // What to do about a link: divide its receiver or its source, whichever its error is owed to and can be divided.
     enum class Part : uint8_t { none, receiver, source };
-    const auto part_of = [&](const Link& link) {
-        const Node& to = node(link.receiver);
-        const double weight = static_cast<double>(to.reflectance * to.reflectance) * area_of(link.receiver);
-        const auto matters = [&](double error) { return error * error * weight > least; };
-        const LinkError error = link_error(link);
-        if (!matters(error.sum())) return Part::none;
+    const auto part_of = [&](const Link& link, const LinkError& error) {
         const bool receiver = is_cluster(link.receiver), source = is_cluster(link.source);
         if (receiver || source)
             return receiver && (!source || extent(elements, link.receiver) >= extent(elements, link.source))
                        ? Part::receiver
                        : Part::source;
-        const bool divisible = !elements[link.receiver].leaf() || may_divide(elements, link.receiver);
-        if (divisible && error.over_receiver >= error.within_source) return Part::receiver;
-        if (elements[link.source].leaf()) return divisible ? Part::receiver : Part::none;
-        return matters(error.within_source) ? Part::source : Part::none;
+        const bool receivers = !elements[link.receiver].leaf() || may_divide(elements, link.receiver),
+                   sources = !elements[link.source].leaf();
+        if (!receivers && !sources) return Part::none;
+        return receivers && (!sources || error.over_receiver >= error.within_source + error.coherent) ? Part::receiver
+                                                                                                      : Part::source;
     };
-    const auto is_uneven = [&](uint32_t leaf) {
-        const double error =
-            kUnevenness * static_cast<double>(job.solution.light[leaf].unevenness * element_nodes_[leaf].reflectance);
-        return elements[leaf].leaf() && may_divide(elements, leaf) && error * error * area_of(leaf) > least;
-    };
-    std::vector<Part> parts(links_.size());
+    std::vector<Part> parts(links_.size(), Part::none);
+    std::vector<double> shares(links_.size() + old_size, 0.0);
     parallel_ranges(links_.size(), kGrain, [&](size_t begin, size_t end) {
-        for (size_t l = begin; l < end; ++l) parts[l] = part_of(links_[l]);
+        for (size_t l = begin; l < end; ++l) {
+            const Link& link = links_[l];
+            const Node& to = node(link.receiver);
+            const LinkError error = link_error(link);
+            parts[l] = part_of(link, error);
+            if (parts[l] != Part::none)
+                shares[l] = (error.squares() + error.coherent * static_cast<double>(to.coherent)) *
+                            static_cast<double>(to.reflectance * to.reflectance) * area_of(link.receiver);
+        }
     });
+    double* const uneven = &shares[links_.size()];
+    for (uint32_t i = 0; i < old_size; ++i)
+        if (elements[i].leaf() && may_divide(elements, i)) {
+            const double error =
+                kUnevenness * static_cast<double>(job.solution.light[i].unevenness * element_nodes_[i].reflectance);
+            uneven[i] = error * error * area_of(i);
+        }
+    const double least = least_share(shares, tolerance_ * tolerance_ * elements.area());
 
     // Elements are divided in their order and in that of the links, by one thread: their numbers are always the same.
     std::vector<Link> kept, fresh;
     kept.reserve(links_.size());
     for (uint32_t i = 0; i < old_size; ++i)
-        if (is_uneven(i)) elements.divide(i);
+        if (uneven[i] >= least) elements.divide(i);
     for (size_t l = 0; l < links_.size(); ++l) {
         const Link& link = links_[l];
-        if (parts[l] == Part::none) {
+        if (!(shares[l] >= least)) {
             kept.push_back(link);
             continue;
         }
@@ -319,16 +431,17 @@ bool HierarchicalSolver::refine(const SolverJob& job) {
     if (kept.size() == links_.size() && elements.size() == old_size) return false;
     job.solution.light.resize(elements.size());
     job.solution.irradiance.resize(elements.size());
-    element_nodes_.resize(elements.size());
+    find_covered(elements, job.lighting(), old_size);
     light_elements(job.lighting(), old_size, std::span(job.solution.light).subspan(old_size));
     evaluate(job, fresh);
     if (job.cancelled) {  // as if it had not begun
         elements.merge(old_size);
         job.solution.light.resize(old_size);
         job.solution.irradiance.resize(old_size);
-        element_nodes_.resize(old_size);
         return false;
     }
+    job.solution.slopes.resize(elements.size());
+    add_nodes(job);
     kept.insert(kept.end(), fresh.begin(), fresh.end());
     links_.swap(kept);
     return true;
@@ -351,7 +464,7 @@ void HierarchicalSolver::links(const Elements& elements, std::vector<ElementLink
     for (const Link& link : links_) {
         ElementLink shown{is_cluster(link.receiver) ? kNoElement : link.receiver,
                           is_cluster(link.source) ? kNoElement : link.source,
-                          link.factor,
+                          link.factor(),
                           {}};
         const NodeId ends[2] = {link.receiver, link.source};
         for (int k = 0; k < 2; ++k) shown.ends[k] = clusters_.centre(elements, ends[k]);

@@ -1,56 +1,86 @@
 #include "radiosity/links.h"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <numbers>
 
 #include "film/pixel_random.h"
 #include "radiosity/element_rays.h"
+#include "radiosity/linear.h"
 #include "radiosity/polygon_factors.h"
 
 namespace trp {
 namespace {
 
-constexpr float kInterpolated = 0.25f;  // of a smooth difference over an element, what is left as an error
-constexpr float kNear = 0.1f;           // points of the receiver differ by more of their sum: it is close to the source
+constexpr double kCurved = 0.06;  // of the square of a relative difference over an element, what no line follows: of
+                                  // d^-2, whose second derivative is 3/2 of the first one's square
+constexpr double kShadow = 0.5;   // of differences in what points see, what a line leaves
+constexpr double kNear = 0.4;     // points of the receiver differ by more of their mean: it is close to the source
 constexpr double kRelativeError = 1e-3;
-constexpr float kUnseen = 0.1f;  // what so few rays may miss of what stands in the way, of a receiver as large as
+constexpr double kUnseen = 0.1;  // what so few rays may miss of what stands in the way, of a receiver as large as
                                  // it is far away
+constexpr uint32_t kOfLink = kLinkPoints * kLinkPoints;
 
 }  // namespace
 
 uint64_t LinkEvaluator::evaluate(std::span<Link> links) {
-    constexpr size_t kInGroup = kBatch / (kLinkPoints * kRaysOfLinkPoint);
+    constexpr size_t kInGroup = kBatch / kOfLink;
     uint64_t rays = 0;
     for (size_t first = 0; first < links.size(); first += kInGroup)
         rays += group(links.subspan(first, std::min(kInGroup, links.size() - first)));
     return rays;
 }
 
-// Point k of a receiver: the middle of a quarter, or of one of four roots of a cluster by area.
-LinkEvaluator::Place LinkEvaluator::receiver_place(NodeId node, uint32_t k) const {
+// The middles of an element's quarters, or of four roots of a cluster by area.
+LinkEvaluator::Places LinkEvaluator::places_of(NodeId node) const {
+    Places out;
     if (is_cluster(node)) {
-        const ElementCluster& cluster = clusters_.of(node);
-        const uint32_t root = clusters_.root_at(cluster, (static_cast<float>(k) + 0.5f) / kLinkPoints);
-        return {elements_[root].centre, elements_.normal(root), elements_.facet_of(root).slot};
+        for (uint32_t k = 0; k < kLinkPoints; ++k) {
+            const uint32_t root = clusters_.root_at(clusters_.of(node), (static_cast<float>(k) + 0.5f) / kLinkPoints);
+            out[k] = {elements_[root].centre, elements_.normal(root), elements_.facet_of(root).slot, 0, 0, 1,
+                      elements_[root]};
+        }
+        return out;
     }
-    const float u = k % 2 ? 0.75f : 0.25f, v = k / 2 ? 0.75f : 0.25f;
-    return {elements_.point_in(node, u, v), elements_.normal(node), elements_.facet_of(node).slot};
-}
-
-// A point of the k-th quarter of a source.
-LinkEvaluator::Place LinkEvaluator::source_place(NodeId node, uint32_t k, float u, float v) const {
-    if (is_cluster(node)) {
-        const ElementCluster& cluster = clusters_.of(node);
-        const uint32_t root = clusters_.root_at(cluster, (static_cast<float>(k) + u) / kRaysOfLinkPoint);
-        return {elements_.point_in(root, u, v), elements_.normal(root), elements_.facet_of(root).slot};
+    const Facet& facet = elements_.facet_of(node);
+    const Element& element = elements_[node];
+    const PlaneAxes axes = axes_of(facet);
+    float x = 0, y = 0, exposed = 0;
+    for (uint32_t k = 0; k < kLinkPoints; ++k) {
+        Place& place = out[k];
+        const uint32_t covered = element.covered >> 4 * k & 15;
+        place = {{},
+                 elements_.normal(node),
+                 facet.slot,
+                 0,
+                 0,
+                 1 - static_cast<float>(std::popcount(covered)) / 4,
+                 elements_.quarter(node, k)};
+        place.point = place.part.centre;
+        if (facet.shape == Facet::Shape::polygon) {
+            place.point = elements_.point_in(node, (static_cast<float>(k) + 0.5f) / kLinkPoints, 0.5f);
+            continue;
+        }
+        if (covered != 0 && covered != 15) {
+            const auto [s, t] = elements_.place_in(node, 4 * k + static_cast<uint32_t>(std::countr_one(covered)));
+            place.point = elements_.point(facet, s, t);
+        }
+        const Vec3 way = place.point - element.centre;
+        place.x = axes.x.dot(way);
+        place.y = axes.y.dot(way);
+        x += place.x * place.exposed;
+        y += place.y * place.exposed;
+        exposed += place.exposed;
     }
-    u = (static_cast<float>(k % 2) + u) / 2;
-    v = (static_cast<float>(k / 2) + v) / 2;
-    return {elements_.point_in(node, u, v), elements_.normal(node), elements_.facet_of(node).slot};
+    // The middle is that of what is not covered.
+    for (Place& place : out)
+        if (exposed > 0) place.x -= x / exposed, place.y -= y / exposed;
+    return out;
 }
 
 // The form factor from a point to a source, with nothing between them.
-double LinkEvaluator::factor_at(const Place& place, NodeId source) {
+double LinkEvaluator::factor_at(const Place& place, const Places& sources, NodeId source) {
     if (!is_cluster(source)) {
         // Rounding lifts points of one plane over it.
         const float height = (place.point - elements_[source].centre).dot(elements_.normal(source));
@@ -58,18 +88,16 @@ double LinkEvaluator::factor_at(const Place& place, NodeId source) {
         if (polygon_of_ != source) elements_.corners(polygon_of_ = source, polygon_);
         return point_to_polygon(Vec3d(place.point), Vec3d(place.normal), polygon_);
     }
-    const ElementCluster& cluster = clusters_.of(source);
+    const float area = clusters_.of(source).area;
     double sum = 0;
-    for (uint32_t k = 0; k < kRaysOfLinkPoint; ++k) {
-        const Place of = source_place(source, k, 0.5f, 0.5f);
+    for (const Place& of : sources) {
         const Vec3 way = of.point - place.point;
         const float d2 = std::max(way.length2(), 1e-37f);
         const float cosines = std::max(way.dot(place.normal), 0.0f) * std::max(-way.dot(of.normal), 0.0f) / d2;
         // Never more than a half space full of it.
-        sum += static_cast<double>(cosines) /
-               (std::numbers::pi * static_cast<double>(d2) + static_cast<double>(cluster.area));
+        sum += static_cast<double>(cosines) / (std::numbers::pi * static_cast<double>(d2) + static_cast<double>(area));
     }
-    return sum * static_cast<double>(cluster.area) / kRaysOfLinkPoint;
+    return sum * static_cast<double>(area) / kLinkPoints;
 }
 
 // A bound whatever way the surfaces of a cluster are turned: a source that fills as much of the sky as it can.
@@ -82,17 +110,18 @@ float LinkEvaluator::greatest_factor(const Link& link) const {
 }
 
 // Between elements, the smaller the receiver the less.
-float LinkEvaluator::unseen_share(const Link& link) const {
-    const float distance = (elements_[link.source].centre - elements_[link.receiver].centre).length();
-    return kUnseen * std::min(1.0f, std::sqrt(elements_[link.receiver].area) / std::max(distance, 1e-37f));
+double LinkEvaluator::unseen_share(const Link& link) const {
+    const float distance = (elements_[link.source].centre - elements_[link.receiver].centre).length(),
+                size = std::sqrt(elements_[link.receiver].area);
+    return kUnseen * static_cast<double>(std::min(1.0f, size / std::max(distance, 1e-37f)));
 }
 
 uint64_t LinkEvaluator::group(std::span<Link> links) {
-    constexpr uint32_t kOfLink = kLinkPoints * kRaysOfLinkPoint;
     alignas(64) uint32_t keys[kBatch], indices[kBatch];
     alignas(64) Lanes u, v;
-    double factors[kBatch / kRaysOfLinkPoint] = {};
+    double factors[kBatch / kLinkPoints] = {};
     float weights[kBatch] = {};  // of the ways: what light would go along them
+    Places receivers[kBatch / kOfLink], sources[kBatch / kOfLink];
     for (uint32_t lane = 0; lane < kBatch; ++lane) {
         const Link& link = links[std::min<size_t>(lane / kOfLink, links.size() - 1)];
         keys[lane] = (link.receiver * 0x9E3779B9u + link.source) * 0x85EBCA6Bu ^ seed_;
@@ -102,67 +131,121 @@ uint64_t LinkEvaluator::group(std::span<Link> links) {
     ways_.clear();
     for (uint32_t number = 0; number < links.size(); ++number) {
         const Link& link = links[number];
+        receivers[number] = places_of(link.receiver);
+        sources[number] = places_of(link.source);
         polygon_of_ = ~0u;
-        for (uint32_t k = 0; k < kLinkPoints; ++k) {
-            const Place place = receiver_place(link.receiver, k);
-            double& factor = factors[number * kLinkPoints + k];
-            factor = factor_at(place, link.source);
+        for (uint32_t r = 0; r < kLinkPoints; ++r) {
+            const Place& place = receivers[number][r];
+            double& factor = factors[number * kLinkPoints + r];
+            factor = factor_at(place, sources[number], link.source);
             if (!(factor > 0)) continue;
-            for (uint32_t ray = 0; ray < kRaysOfLinkPoint; ++ray) {
-                const auto lane = static_cast<int>(number * kOfLink + k * kRaysOfLinkPoint + ray);
-                // Another quarter of the source first for each point.
-                const Place to = source_place(link.source, (ray + k) % kRaysOfLinkPoint, u[lane], v[lane]);
-                const Vec3 way = to.point - place.point;
+            for (uint32_t k = 0; k < kLinkPoints; ++k) {
+                const Place& of = sources[number][k];
+                const auto lane = static_cast<int>(number * kOfLink + r * kLinkPoints + k);
+                const Vec3 way = of.point - place.point;
                 const float d2 = std::max(way.length2(), 1e-37f);
-                weights[lane] = std::max(way.dot(place.normal), 0.0f) * std::max(-way.dot(to.normal), 0.0f) /
-                                (d2 * std::max(d2, clusters_.area(elements_, link.source) / kRaysOfLinkPoint));
-                if (weights[lane] > 0) ways_.set(lane, place.slot, place.point, place.normal, to.point);
+                weights[lane] = std::max(way.dot(place.normal), 0.0f) * std::max(-way.dot(of.normal), 0.0f) /
+                                (d2 * std::max(d2, clusters_.area(elements_, link.source) / kLinkPoints));
+                // To any point of the quarter that is before both planes, as the factor has it.
+                const Vec3 to = elements_.point_in(of.part, u[lane], v[lane]), seen = to - place.point;
+                if (!(seen.dot(place.normal) > 0) || !(seen.dot(of.normal) < 0)) weights[lane] = 0;
+                if (weights[lane] > 0) ways_.set(lane, place.slot, place.point, place.normal, to);
             }
         }
     }
     const uint64_t rays = ways_.trace();
-    for (uint32_t number = 0; number < links.size(); ++number) {
-        Link& link = links[number];
-        Vec3 sum(0, 0, 0);
-        float least = 1e30f, most = 0, seen = 0, seen2 = 0, noise = 0;
-        double all = 0;
-        for (uint32_t k = 0; k < kLinkPoints; ++k) {
-            Vec3 free(0, 0, 0);
-            float weight = 0;
-            for (uint32_t ray = 0; ray < kRaysOfLinkPoint; ++ray) {
-                const auto lane = static_cast<int>(number * kOfLink + k * kRaysOfLinkPoint + ray);
-                free += ways_.free(lane) * weights[lane];
-                weight += weights[lane];
-            }
-            const uint32_t place = number * kLinkPoints + k;
-            if (weight > 0) free = free / weight;
-            sum += free * static_cast<float>(factors[place]);
-            all += factors[place];
-            least = std::min(least, static_cast<float>(factors[place]));
-            most = std::max(most, static_cast<float>(factors[place]));
-            const float share = luminance(free);
-            seen += share / kLinkPoints;
-            seen2 += share * share / kLinkPoints;
-            noise += share * (1 - share) / (kLinkPoints * kRaysOfLinkPoint);
-        }
-        link.factor = sum / kLinkPoints;
-        // Four points are too few where the two are close: the contour integral says how much light there is.
-        const bool clustered = is_cluster(link.receiver) || is_cluster(link.source);
-        if (!clustered && most - least > kNear * static_cast<float>(all)) {
-            elements_.corners(link.receiver, receiver_);
-            elements_.corners(link.source, polygon_);
-            const double exact = polygon_to_polygon(receiver_, polygon_, kRelativeError) /
-                                 static_cast<double>(elements_[link.receiver].area);
-            link.factor *= static_cast<float>(exact * kLinkPoints / all);
-        }
-        // What differs smoothly is interpolated between elements later, and mostly right then; shadows' edges are not.
-        // Of what points differ in how much they see, chance explains a part: few rays went to each.
-        const float mean = static_cast<float>(all) / kLinkPoints, smooth = (most - least) / 2,
-                    shadow = std::sqrt(std::max(seen2 - seen * seen - 1.5f * noise, 0.0f));
-        link.spread =
-            clustered ? greatest_factor(link) : kInterpolated * smooth * seen + mean * (shadow + unseen_share(link));
-    }
+    for (uint32_t number = 0; number < links.size(); ++number)
+        finish(links[number], receivers[number], sources[number], &factors[number * kLinkPoints],
+               &weights[number * kOfLink], static_cast<int>(number * kOfLink));
     return rays;
+}
+
+void LinkEvaluator::finish(Link& link, const Places& receivers, const Places& sources, const double* factors,
+                           const float* weights, int first_lane) {
+    // What each point of the receiver gets, of the source's mean and of its changes. Points count by what is not
+    // covered around them.
+    link.transfer.fill(0);
+    link.spread = link.hidden = 0;
+    float exposed = 0;
+    for (const Place& place : receivers) exposed += place.exposed;
+    Vec3 colors(0, 0, 0);
+    double arriving[kLinkPoints][3] = {};
+    double least = 1e30, most = 0, mean = 0, squares = 0, seen = 0, seen2 = 0, noise = 0;
+    double counts[kLinkPoints] = {};
+    for (uint32_t r = 0; r < kLinkPoints && exposed > 0; ++r) {
+        counts[r] = static_cast<double>(receivers[r].exposed / exposed);
+        if (counts[r] == 0) continue;
+        const double factor = factors[r], counted = factor * counts[r];
+        double weight = 0, share = 0;
+        for (uint32_t k = 0; k < kLinkPoints; ++k) weight += static_cast<double>(weights[r * kLinkPoints + k]);
+        for (uint32_t k = 0; k < kLinkPoints && weight > 0; ++k) {
+            const double part = static_cast<double>(weights[r * kLinkPoints + k]) / weight;
+            const Vec3 free = ways_.free(first_lane + static_cast<int>(r * kLinkPoints + k));
+            const double bright = part * static_cast<double>(luminance(free));
+            colors += free * static_cast<float>(counted * part);
+            share += bright;
+            arriving[r][0] += factor * bright;
+            arriving[r][1] += factor * bright * static_cast<double>(sources[k].x);
+            arriving[r][2] += factor * bright * static_cast<double>(sources[k].y);
+        }
+        mean += counted;
+        squares += counted * factor;
+        least = std::min(least, factor);
+        most = std::max(most, factor);
+        seen += counted * share;
+        seen2 += counted * share * share;
+        noise += counted * share * (1 - share) / kLinkPoints;
+    }
+    const bool clustered = is_cluster(link.receiver) || is_cluster(link.source);
+    const auto exact = [&] {
+        elements_.corners(link.receiver, receiver_);
+        elements_.corners(link.source, polygon_);
+        return polygon_to_polygon(receiver_, polygon_, kRelativeError) /
+               static_cast<double>(elements_[link.receiver].area);
+    };
+    if (!(mean > 0)) {
+        // Other points may see the source where its plane cuts the receiver: that is left to smaller elements.
+        if (exposed > 0) link.spread = clustered ? greatest_factor(link) : static_cast<float>(exact());
+        return;
+    }
+    seen /= mean;
+    seen2 /= mean;
+    noise /= mean;
+    const float bright = luminance(colors);
+    link.tint = bright > 0 ? colors / bright : Vec3(1, 1, 1);
+
+    Moments points;
+    for (uint32_t r = 0; r < kLinkPoints; ++r)
+        points.add(static_cast<double>(receivers[r].x), static_cast<double>(receivers[r].y), counts[r]);
+    const Moments fit = points.inverse();
+    const auto line_of = [&](auto&& value) {  // mean, and by x and y
+        std::array<double, 3> sum{};
+        for (uint32_t r = 0; r < kLinkPoints; ++r) {
+            const double counted = counts[r] * value(r);
+            sum[0] += counted;
+            sum[1] += counted * static_cast<double>(receivers[r].x);
+            sum[2] += counted * static_cast<double>(receivers[r].y);
+        }
+        return std::array{sum[0], fit.xx * sum[1] + fit.xy * sum[2], fit.xy * sum[1] + fit.yy * sum[2]};
+    };
+    for (size_t column = 0; column < 3; ++column) {
+        const auto line = line_of([&](uint32_t r) { return arriving[r][column]; });
+        for (size_t row = 0; row < 3; ++row) link.transfer[3 * row + column] = static_cast<float>(line[row]);
+    }
+    // Four points are too few where the two are close: the contour integral says how much light there is.
+    if (!clustered && most - least > kNear * mean && elements_[link.receiver].covered == 0) {
+        const auto scale = static_cast<float>(exact() / mean);
+        for (float& t : link.transfer) t *= scale;
+    }
+    link.hidden = static_cast<float>(seen > 0 ? std::sqrt(std::max(1 - seen, 0.0) / seen) : 0);
+    // What differs smoothly follows a line mostly; shadows' edges do not. Of what points differ in how much they see,
+    // chance explains a part: few rays went to each.
+    const auto line = line_of([&](uint32_t r) { return factors[r]; });
+    const double twist = std::sqrt(std::max(squares - mean * mean - points.of(line[1], line[2]), 0.0)),
+                 smooth = kCurved * (most - least) * (most - least) / mean + twist,
+                 shadow = std::sqrt(std::max(seen2 - seen * seen - 1.5 * noise, 0.0));
+    link.spread = clustered ? greatest_factor(link)
+                            : static_cast<float>(smooth * seen + mean * (kShadow * shadow + unseen_share(link)));
 }
 
 }  // namespace trp

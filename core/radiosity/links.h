@@ -1,6 +1,7 @@
 // Links of the hierarchy: what a node gives another, found at a few points of the receiver.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <span>
 
@@ -9,15 +10,21 @@
 
 namespace trp {
 
+// Irradiance that arrives at the receiver for what leaves the source, both as Linear: the mean and the change along x
+// and y of the one (rows) for those of the other (columns), visibility included. With a cluster, which has a mean
+// alone, the rest is 0.
 struct Link {
     NodeId receiver, source;
-    Vec3 factor{0, 0, 0};  // mean irradiance at the receiver for a radiosity of 1 at the source, visibility included
-    float spread = 0;      // what it is wrong by for what it differs by over the receiver, as luminance; with a
-                           // cluster, the most that the factor may be
+    Vec3 tint{1, 1, 1};  // of what passes glass; its luminance is 1
+    std::array<float, 9> transfer{};
+    float spread = 0;  // what the irradiance is wrong by over the receiver for a radiosity of 1; with a cluster, the
+                       // most that there may be of it
+    float hidden = 0;  // of the source, against the part that is seen: √((1 − V) / V)
+
+    Vec3 factor() const { return tint * transfer[0]; }
 };
 
-inline constexpr uint32_t kLinkPoints = 4;       // of the receiver: the middles of its quarters
-inline constexpr uint32_t kRaysOfLinkPoint = 4;  // to points of the source
+inline constexpr uint32_t kLinkPoints = 4;  // of each end: the middles of its quarters; rays go from each to each
 
 // One to a thread.
 class LinkEvaluator {
@@ -28,16 +35,23 @@ class LinkEvaluator {
     uint64_t evaluate(std::span<Link> links);
 
   private:
+    // A point that stands for a part of a node; x and y: from the node's middle, along its facet's axes; the share of
+    // the part that is not covered.
     struct Place {
         Vec3 point, normal;
         uint32_t slot;
+        float x, y, exposed;
+        Element part;  // of an element
     };
-    Place receiver_place(NodeId node, uint32_t k) const;
-    Place source_place(NodeId node, uint32_t k, float u, float v) const;
-    double factor_at(const Place& place, NodeId source);
+    using Places = std::array<Place, kLinkPoints>;
+    Places places_of(NodeId node) const;
+    Vec3 point_near(NodeId node, const Place& place, float u, float v) const;
+    double factor_at(const Place& place, const Places& sources, NodeId source);
     float greatest_factor(const Link& link) const;
-    float unseen_share(const Link& link) const;
+    double unseen_share(const Link& link) const;
     uint64_t group(std::span<Link> links);
+    void finish(Link& link, const Places& receivers, const Places& sources, const double* factors, const float* weights,
+                int first_lane);
 
     const Elements& elements_;
     const ElementClusters& clusters_;

@@ -119,7 +119,7 @@ void MatrixSolver::sweep(const SolverJob& job) {
                 const double* const row = &matrix[i * count_];
                 double sum = 0;
                 for (size_t j = 0; j < count_; ++j) sum += row[j] * radiosity_[j][k];
-                const double irradiance = sum / static_cast<double>(job.elements[element].area);
+                const double area = job.elements[element].exposed_area(), irradiance = area > 0 ? sum / area : 0;
                 const double before = radiosity_[i][k];
                 solution.irradiance[i][k] = irradiance;
                 radiosity_[i][k] = solution.radiosity(element)[k];

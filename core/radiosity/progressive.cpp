@@ -29,10 +29,12 @@ class ProgressiveSolver : public Solver {
     }
     Vec3d unshot_of(const SolverJob& job, uint32_t patch) const {
         Vec3d sum(0, 0, 0);
+        double area = 0;
         for_each_leaf(job.elements, patch, [&](uint32_t leaf) {
-            sum += job.solution.unshot[leaf] * static_cast<double>(job.elements[leaf].area);
+            sum += job.solution.unshot[leaf] * job.elements[leaf].exposed_area();
+            area += job.elements[leaf].exposed_area();
         });
-        return sum / static_cast<double>(job.elements[patch].area);
+        return area > 0 ? sum / area : sum;
     }
 
     std::vector<uint32_t> patches_;
@@ -67,8 +69,9 @@ void ProgressiveSolver::shoot(const SolverJob& job, uint32_t patch) {
     parallel_ranges(elements.size(), 4096, [&](size_t begin, size_t end) {
         for (size_t j = begin; j < end; ++j) {
             const auto element = static_cast<uint32_t>(j);
-            if (!elements[element].leaf() || row_[j] == Vec3d(0, 0, 0)) continue;
-            const Vec3d arriving = row_[j] * shot / static_cast<double>(elements[element].area);
+            const double area = elements[element].exposed_area();
+            if (!elements[element].leaf() || row_[j] == Vec3d(0, 0, 0) || area == 0) continue;
+            const Vec3d arriving = row_[j] * shot / area;
             solution.irradiance[j] += arriving;
             solution.unshot[j] += solution.reflected(element, arriving);
         }
@@ -83,6 +86,8 @@ void ProgressiveSolver::gather(const SolverJob& job, uint32_t element) {
     Vec3d sum(0, 0, 0);
     for (uint32_t j = 0; j < job.elements.size(); ++j)
         if (row_[j] != Vec3d(0, 0, 0)) sum += row_[j] * solution.radiosity(j);
+    const double exposed = job.elements[element].exposed();
+    if (exposed > 0) sum = sum / exposed;
     // What is new in it, others have not gathered yet.
     solution.unshot[element] = solution.reflected(element, sum - solution.irradiance[element]);
     solution.irradiance[element] = sum;
@@ -95,7 +100,7 @@ bool ProgressiveSolver::measure(const SolverJob& job) const {
     double area = 0;
     for (uint32_t i = 0; i < job.elements.size(); ++i) {
         if (!job.elements[i].leaf()) continue;
-        const double a = job.elements[i].area;
+        const double a = job.elements[i].exposed_area();
         area += a;
         unshot += solution.unshot[i] * a;
         all += solution.radiosity(i) * a;
@@ -116,7 +121,7 @@ bool ProgressiveSolver::step(const SolverJob& job) {
     if (order == RadiositySettings::Order::sorted) {
         double most = -1;
         for (const uint32_t patch : patches_) {
-            const double unshot = brightness(unshot_of(job, patch)) * static_cast<double>(job.elements[patch].area);
+            const double unshot = brightness(unshot_of(job, patch)) * job.elements[patch].exposed_area();
             if (unshot > most) most = unshot, chosen = patch;
         }
     }

@@ -8,6 +8,7 @@
 
 #include "base/clock.h"
 #include "base/parallel.h"
+#include "radiosity/covered.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/sides.h"
 
@@ -73,9 +74,11 @@ void Radiosity::make_elements(std::atomic<bool>& cancelled) {
     auto elements = std::make_shared<Elements>(snapshot_, size, hierarchical || patches);
     const LightingJob job{*elements, settings.illumination, settings.seed, &cancelled, &statistics_.rays};
     add_sides(*elements, job);
+    find_covered(*elements, job, 0);
     for (uint32_t level = 0, first = 0; patches && level < r.patch_levels; ++level) {
         const uint32_t end = elements->size();
         for (; first < end; ++first) elements->divide(first);
+        find_covered(*elements, job, end);
     }
     Solution solution;
     solution.light.resize(elements->size());
@@ -158,7 +161,12 @@ std::shared_ptr<const ShownSolution> Radiosity::shown(const RadiositySettings& v
             arriving = solution_.unshot.empty() ? Vec3d(0, 0, 0) : solution_.unshot[i];
         out->leaves[i] = Vec3(arriving);
     }
-    out->at_vertices = out->vertices->average(*elements_, out->leaves);
+    std::vector<std::array<Vec3, 2>> slopes;
+    if (view.view != RadiositySettings::View::unshot) slopes = solution_.slopes;
+    if (view.view == RadiositySettings::View::radiosity)
+        for (uint32_t i = 0; i < slopes.size(); ++i)
+            for (Vec3& slope : slopes[i]) slope *= solution_.light[i].reflectance;
+    out->at_vertices = out->vertices->average(*elements_, out->leaves, slopes);
     return out;
 }
 

@@ -9,7 +9,8 @@
 namespace trp {
 namespace {
 
-constexpr uint32_t kRays = 16;  // from each side
+constexpr uint32_t kRays = 16;   // from each side
+constexpr double kLarge = 1e-4;  // of all area
 
 // Disjoint sets (Tarjan 1975), joined in one thread and so the same each time.
 class Regions {
@@ -79,6 +80,21 @@ void add_sides(Elements& elements, const LightingJob& job) {
                 any = true;
             }
         if (!any) elements.add_side(facet, exists(2 * facet + 1) && !sees[2 * facet] && sees[2 * facet + 1]);
+    }
+
+    // What sees sides without elements may be covered in part; of large facets so few rays may have missed it.
+    double all = 0;
+    for (const Facet& facet : facets) all += static_cast<double>(facet.area);
+    for (uint32_t side = 0; side < 2 * count; ++side) {
+        const Facet& facet = facets[side / 2];
+        const uint32_t root = facet.roots[side % 2];
+        if (root == kNoElement) continue;
+        const bool suspect =
+            static_cast<double>(facet.area) > kLarge * all ||
+            std::any_of(&met[size_t{side} * kRays], &met[size_t{side} * kRays] + kRays, [&](uint32_t other) {
+                return other != kNoElement && facets[other / 2].roots[other % 2] == kNoElement;
+            });
+        for (uint32_t k = 0; suspect && k < facet.across * facet.up; ++k) elements.set_covered(root + k, 1);
     }
 }
 

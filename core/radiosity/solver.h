@@ -3,6 +3,7 @@
 // eq. 5). A solution is valid after each step, and where a step was cancelled.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <functional>
 #include <memory>
@@ -21,8 +22,11 @@ inline double brightness(const Vec3d& v) {
 struct Solution {
     std::vector<ElementLight> light;
     std::vector<Vec3d> irradiance;  // of other elements, W/m²
-    std::vector<Vec3d> unshot;      // progressive: radiosity that has not been shot yet, W/m²; else empty
-    Vec3d ambient{0, 0, 0};         // progressive: irradiance that stands for what is unshot, for display
+    // Hierarchical: of all light that arrives, what it changes by per metre along the facet's axes (Linear); else
+    // empty.
+    std::vector<std::array<Vec3, 2>> slopes;
+    std::vector<Vec3d> unshot;  // progressive: radiosity that has not been shot yet, W/m²; else empty
+    Vec3d ambient{0, 0, 0};     // progressive: irradiance that stands for what is unshot, for display
 
     Vec3d reflected(uint32_t i, const Vec3d& arriving) const { return Vec3d(light[i].reflectance) * arriving; }
     Vec3d emitted(uint32_t i) const { return Vec3d(light[i].emission) + reflected(i, Vec3d(light[i].irradiance)); }

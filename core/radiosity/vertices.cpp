@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 
+#include "radiosity/linear.h"
+
 namespace trp {
 namespace {
 
@@ -135,16 +137,25 @@ ElementVertices::ElementVertices(const Elements& elements) {
     first_.back() = static_cast<uint32_t>(loop_.size());
 }
 
-std::vector<Vec3> ElementVertices::average(const Elements& elements, const std::vector<Vec3>& values) const {
+std::vector<Vec3> ElementVertices::average(const Elements& elements, const std::vector<Vec3>& values,
+                                           const std::vector<std::array<Vec3, 2>>& slopes) const {
     std::vector<Vec3> sums(vertices_.size(), Vec3(0, 0, 0));
     std::vector<float> areas(vertices_.size(), 0.0f);
-    for (uint32_t i = 0; i < elements.size(); ++i)
+    for (uint32_t i = 0; i < elements.size(); ++i) {
+        const PlaneAxes axes = axes_of(elements.facet_of(i));
+        const auto area = static_cast<float>(elements[i].exposed_area());
         for (const uint32_t v : around(i)) {
-            sums[v] += values[i] * elements[i].area;
-            areas[v] += elements[i].area;
+            Vec3 value = values[i];
+            if (!slopes.empty()) {
+                const Vec3 way = vertices_[v].position - elements[i].centre;
+                value += slopes[i][0] * axes.x.dot(way) + slopes[i][1] * axes.y.dot(way);
+            }
+            sums[v] += value * area;
+            areas[v] += area;
         }
+    }
     for (size_t v = 0; v < sums.size(); ++v)
-        if (areas[v] > 0) sums[v] = sums[v] / areas[v];
+        for (int c = 0; c < 3 && areas[v] > 0; ++c) sums[v][c] = std::max(sums[v][c] / areas[v], 0.0f);
     return sums;
 }
 

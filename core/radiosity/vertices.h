@@ -29,8 +29,10 @@ class ElementVertices {
     std::span<const uint32_t> around(uint32_t leaf) const {
         return {&loop_[first_[leaf]], first_[leaf + 1] - first_[leaf]};
     }
-    // Means of the leaves' values by area, at all vertices.
-    std::vector<Vec3> average(const Elements& elements, const std::vector<Vec3>& values) const;
+    // Means of the leaves' values by the area that is not covered, at all vertices. `slopes`: of each leaf's value
+    // along its facet's axes, as Linear has them; or empty.
+    std::vector<Vec3> average(const Elements& elements, const std::vector<Vec3>& values,
+                              const std::vector<std::array<Vec3, 2>>& slopes) const;
     // What vertices have, and the leaf, at a place in it.
     Vec3 interpolate(const Elements& elements, const Elements::Place& place, const std::vector<Vec3>& at_vertices,
                      const std::vector<Vec3>& at_leaves) const;

@@ -208,7 +208,7 @@ TEST(Radiosity, ALampLightsAsInRayCasting) {
         Solution solution(scene, settings);
         const std::vector<double> h = solution.solve().red("irradiance");
         const std::vector<float> centre = solution.read("centre", 3);
-        ASSERT_GT(h.size(), 100u);
+        ASSERT_GT(h.size(), 30u);  // light is linear over the elements of the hierarchy: they may be large
         for (size_t k = 0; k < h.size(); ++k) {
             const double d2 = 1 + centre[3 * k] * centre[3 * k] + centre[3 * k + 1] * centre[3 * k + 1];
             EXPECT_NEAR(h[k], std::pow(d2, -1.5), 0.01) << solver;
