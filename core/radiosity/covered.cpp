@@ -17,15 +17,12 @@ uint16_t open_places(const Elements& elements, const LightingJob& job, uint32_t 
     std::fill_n(keys, kBatch, element * 0x9E3779B9u ^ job.seed * 0x85EBCA6Bu);
     for (uint32_t k = 0; k < kBatch; ++k) indices[k] = round + kRounds * (k % 16);
     random_pair_of(keys, indices, 0, u, v);
-    const Facet& facet = elements.facet_of(element);
     const Vec3 normal = elements.normal(element);
     rays.clear();
     hits.clear();
     for (uint32_t k = 0; k < 16; ++k) {
         if (!(left >> k & 1)) continue;
-        const auto [s, t] = elements.place_in(element, k);
-        const Vec3 p =
-            facet.shape == Facet::Shape::polygon ? elements.point_in(element, s, t) : elements.point(facet, s, t);
+        const Vec3 p = elements.place_point(element, k);
         rays.push_back({p + normal * clearance(p), cosine_direction(normal, u[k], v[k]), k});
     }
     *job.rays += tracer.trace(rays, hits);

@@ -13,6 +13,7 @@ namespace trp {
 namespace {
 
 constexpr uint32_t kSide = 4, kPlaces = kSide * kSide;  // of an element
+constexpr double kByChance = 2 * 2.0 / 13;  // of what a line does not explain, what it may by chance, twice the mean
 
 // One to a thread.
 struct Scratch {
@@ -97,6 +98,8 @@ ElementLight mean(const Elements& elements, uint32_t element, int first, const S
         }
         out.emission += w.coefficients.emission.get(i) * (share * alpha * std::numbers::pi_v<float>);
         const Vec3 irradiance = w.irradiance.get(i);
+        if (irradiance != Vec3(0, 0, 0) || w.coefficients.emission.get(i) != Vec3(0, 0, 0))
+            out.lit = static_cast<uint16_t>(out.lit | 1u << k);
         out.irradiance += irradiance * share;
         squares += static_cast<double>(luminance(irradiance) * luminance(irradiance) * share);
         const Vec3 from_middle = w.points.position.get(i) - elements[element].centre;
@@ -115,8 +118,13 @@ ElementLight mean(const Elements& elements, uint32_t element, int first, const S
     out.irradiance_x = by_x * static_cast<float>(fit.xx) + by_y * static_cast<float>(fit.xy);
     out.irradiance_y = by_x * static_cast<float>(fit.xy) + by_y * static_cast<float>(fit.yy);
     const double bright = luminance(out.irradiance),
-                 explained = places.of(luminance(out.irradiance_x), luminance(out.irradiance_y));
-    out.unevenness = static_cast<float>(std::sqrt(std::max(squares - bright * bright - explained, 0.0)));
+                 explained = places.of(luminance(out.irradiance_x), luminance(out.irradiance_y)),
+                 rest = std::max(squares - bright * bright - explained, 0.0);
+    out.unevenness = static_cast<float>(std::sqrt(rest));
+    // Of samples that differ by chance alone, a line explains 2 parts in 15: no more than what is beyond that is kept.
+    const auto sure = static_cast<float>(std::max(1 - kByChance * rest / std::max(explained, 1e-300), 0.0));
+    out.irradiance_x *= sure;
+    out.irradiance_y *= sure;
     return out;
 }
 

@@ -95,7 +95,8 @@ void ElementTracer::batch(const ElementRay* rays, int count, std::vector<Element
                 continue;
             }
             const auto place = elements_.find(slot, triangle, packet.hit.u[k], packet.hit.v[k], rays[i].direction);
-            hits.push_back({rays[i].id, place.element, rays[i].weight});
+            hits.push_back({rays[i].id, place.element, rays[i].weight, false,
+                            rays[i].origin + rays[i].direction * packet.ray.tfar[k]});
         }
     }
     if (any_special) go_on(rays, count, more, hits);
@@ -125,7 +126,7 @@ void ElementTracer::go_on(const ElementRay* rays, int count, std::vector<Element
             // An element's reflectance holds its alpha.
             const auto place =
                 elements_.find(points_.slot[i], points_.triangle[i], points_.b1[i], points_.b2[i], ray.direction);
-            hits.push_back({ray.id, place.element, ray.weight});
+            hits.push_back({ray.id, place.element, ray.weight, false, points_.position.get(i)});
         }
         Vec3 through = Vec3(1, 1, 1) * (1 - alpha);
         if (material.transmits) through += coefficients_.transmission.get(i) * alpha;

@@ -23,7 +23,8 @@ struct ElementRay {
 struct ElementHit {
     uint32_t id, element;
     Vec3 weight;
-    bool left = false;  // the scene
+    bool left = false;       // the scene
+    Vec3 position{0, 0, 0};  // where it did not
 };
 
 // One to a thread.

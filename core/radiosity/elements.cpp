@@ -263,6 +263,12 @@ std::array<float, 2> Elements::place_in(uint32_t element, uint32_t number) const
     return {cell.s + middle * cell.ds, cell.t + middle * cell.dt};
 }
 
+Vec3 Elements::place_point(uint32_t element, uint32_t number) const {
+    const Facet& facet = facet_of(element);
+    const auto [s, t] = place_in(element, number);
+    return facet.shape == Facet::Shape::polygon ? point_in(element, s, t) : point(facet, s, t);
+}
+
 Vec3 Elements::point_in(const Element& element, float u, float v) const {
     const Facet& facet = facets_[element.facet];
     if (facet.shape != Facet::Shape::polygon) {

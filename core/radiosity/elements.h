@@ -84,6 +84,7 @@ class Elements {
     // The facet's coordinates of one of 16 places of an element, the middles of its quarters' quarters: number 4 i + j
     // in quarter i; of a polygon, a point for each.
     std::array<float, 2> place_in(uint32_t element, uint32_t number) const;
+    Vec3 place_point(uint32_t element, uint32_t number) const;
     // A point of an element by coordinates of its own, both in [0, 1]; uniform in area where u and v are, but for
     // skewed quads, which are nearly so.
     Vec3 point_in(const Element& element, float u, float v) const;

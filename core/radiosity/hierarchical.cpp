@@ -26,7 +26,8 @@ constexpr size_t kGrain = 1024;  // links that a thread takes at a time
 constexpr double kCoherent = 0.5;
 constexpr double kUnevenness = 0.5;  // of a lamp's light over an element, what is left as an error
 constexpr uint32_t kMostSweeps = 500;
-constexpr size_t kMostLinks = 1 << 18;    // then the solution is left as it is; its residual says how good
+constexpr size_t kMost =
+    1 << 20;  // links and elements; then the solution is left as it is, and its residual says how good
 constexpr float kSmallest = 1.0f / 1024;  // side of an element, of the scene's extent, where no size is given
 
 // Whether a part of each of two elements lies before the other's plane.
@@ -77,6 +78,7 @@ class HierarchicalSolver : public Solver {
     LinkError link_error(const Link& link) const;
     double measure(const SolverJob& job);
     bool refine(const SolverJob& job);
+    bool is_full() const { return links_.size() + element_nodes_.size() > kMost; }
     float extent(const Elements& elements, NodeId id) const;
     struct Children {
         NodeId ids[4];
@@ -450,14 +452,14 @@ bool HierarchicalSolver::refine(const SolverJob& job) {
 bool HierarchicalSolver::step(const SolverJob& job) {
     if (!begun_) {
         if (!begin(job)) return true;
-    } else if (job.statistics.residual <= tolerance_ || links_.size() > kMostLinks || !refine(job)) {
+    } else if (job.statistics.residual <= tolerance_ || is_full() || !refine(job)) {
         return job.cancelled;
     }
     solve(job);
     ++job.statistics.steps;
     job.statistics.links = links_.size();
     job.statistics.residual = std::sqrt(measure(job));
-    return job.statistics.residual > tolerance_ && links_.size() <= kMostLinks;
+    return job.statistics.residual > tolerance_ && !is_full();
 }
 
 void HierarchicalSolver::links(const Elements& elements, std::vector<ElementLink>& out) const {

@@ -63,8 +63,7 @@ LinkEvaluator::Places LinkEvaluator::places_of(NodeId node) const {
             continue;
         }
         if (covered != 0 && covered != 15) {
-            const auto [s, t] = elements_.place_in(node, 4 * k + static_cast<uint32_t>(std::countr_one(covered)));
-            place.point = elements_.point(facet, s, t);
+            place.point = elements_.place_point(node, 4 * k + static_cast<uint32_t>(std::countr_one(covered)));
         }
         const Vec3 way = place.point - element.centre;
         place.x = axes.x.dot(way);
@@ -243,7 +242,7 @@ void LinkEvaluator::finish(Link& link, const Places& receivers, const Places& so
     const auto line = line_of([&](uint32_t r) { return factors[r]; });
     const double twist = std::sqrt(std::max(squares - mean * mean - points.of(line[1], line[2]), 0.0)),
                  smooth = kCurved * (most - least) * (most - least) / mean + twist,
-                 shadow = std::sqrt(std::max(seen2 - seen * seen - 1.5 * noise, 0.0));
+                 shadow = std::sqrt(std::max(seen2 - seen * seen - noise, 0.0));
     link.spread = clustered ? greatest_factor(link)
                             : static_cast<float>(smooth * seen + mean * (kShadow * shadow + unseen_share(link)));
 }

@@ -4,13 +4,15 @@
 #include <numeric>
 
 #include "base/parallel.h"
+#include "film/pixel_random.h"
 #include "radiosity/element_rays.h"
+#include "radiosity/way_rays.h"
 
 namespace trp {
 namespace {
 
-constexpr uint32_t kRays = 16;   // from each side
-constexpr double kLarge = 1e-4;  // of all area
+constexpr double kLarge = 1e-4;  // of all area: a facet that something else may stand on
+constexpr uint32_t kRays = 4;    // from each place
 
 // Disjoint sets (Tarjan 1975), joined in one thread and so the same each time.
 class Regions {
@@ -26,6 +28,80 @@ class Regions {
     std::vector<uint32_t> parent_;
 };
 
+// All sides of all facets, two elements to each, and places on them: 16 on large ones, 4 on the others.
+class Places {
+  public:
+    explicit Places(const Elements& elements) : elements_(elements), first_(elements.size() + 1, 0) {
+        double all = 0;
+        for (const Facet& facet : elements.facets()) all += static_cast<double>(facet.area);
+        for (uint32_t side = 0; side < elements.size(); ++side)
+            first_[side + 1] =
+                first_[side] + (static_cast<double>(elements.facet_of(side).area) > kLarge * all ? 16 : 4);
+    }
+    uint32_t size() const { return first_.back(); }
+    uint32_t first(uint32_t side) const { return first_[side]; }
+    uint32_t count(uint32_t side) const { return first_[side + 1] - first_[side]; }
+    // Number `k` of a side, among the 16 of an element: one in each quarter where there are 4.
+    uint32_t place_of(uint32_t side, uint32_t k) const { return count(side) == 16 ? k : 5 * k; }
+    Vec3 point(uint32_t side, uint32_t k) const { return elements_.place_point(side, place_of(side, k)); }
+    uint32_t nearest(uint32_t side, const Vec3& point) const {
+        uint32_t best = 0;
+        float least = 1e38f;
+        for (uint32_t k = 0; k < count(side); ++k)
+            if (const float d2 = (this->point(side, k) - point).length2(); d2 < least) least = d2, best = k;
+        return best;
+    }
+
+  private:
+    const Elements& elements_;
+    std::vector<uint32_t> first_;
+};
+
+// The place that each ray of each place shows to be in one region with it: the place next to where it meets a side,
+// where nothing stands between the two; kNoElement: none.
+std::vector<uint32_t> look_around(const Elements& trial, const Places& places, const LightingJob& job) {
+    std::vector<uint32_t> met(size_t{places.size()} * kRays, kNoElement);
+    parallel_ranges(trial.size(), 64, [&](size_t begin, size_t end) {
+        ElementTracer tracer(trial);
+        const auto ways = std::make_unique<WayRays>(trial.snapshot());
+        std::vector<ElementRay> rays;
+        std::vector<ElementHit> hits;
+        alignas(64) uint32_t keys[kBatch], indices[kBatch];
+        alignas(64) Lanes u, v;
+        for (size_t side = begin; side < end && !*job.cancelled; ++side) {
+            const auto element = static_cast<uint32_t>(side);
+            std::fill_n(keys, kBatch, element * 0x9E3779B9u);
+            std::iota(indices, indices + kBatch, 0u);
+            random_pair_of(keys, indices, 0, u, v);
+            const Vec3 normal = trial.normal(element);
+            rays.clear();
+            hits.clear();
+            for (uint32_t k = 0; k < places.count(element) * kRays; ++k) {
+                const Vec3 p = places.point(element, k / kRays);
+                rays.push_back({p + normal * clearance(p), cosine_direction(normal, u[k], v[k]), k});
+            }
+            *job.rays += tracer.trace(rays, hits);
+            // What mirrors and glass hand on comes after the first hits: a batch holds them all, or they are let go.
+            const size_t count = std::min<size_t>(hits.size(), kBatch);
+            ways->clear();
+            for (size_t h = 0; h < count; ++h) {
+                const ElementHit& hit = hits[h];
+                if (hit.element == kNoElement) continue;
+                const uint32_t next = places.nearest(hit.element, hit.position);
+                const Vec3 to = places.point(hit.element, next), other = trial.normal(hit.element);
+                met[size_t{places.first(element)} * kRays + hit.id] = places.first(hit.element) + next;
+                ways->set(static_cast<int>(h), trial.facet_of(hit.element).slot, hit.position, other,
+                          to + other * (2 * clearance(to)));
+            }
+            *job.rays += ways->trace();
+            for (size_t h = 0; h < count; ++h)
+                if (hits[h].element != kNoElement && ways->free(static_cast<int>(h)) == Vec3(0, 0, 0))
+                    met[size_t{places.first(element)} * kRays + hits[h].id] = kNoElement;
+        }
+    });
+    return met;
+}
+
 }  // namespace
 
 void add_sides(Elements& elements, const LightingJob& job) {
@@ -33,68 +109,47 @@ void add_sides(Elements& elements, const LightingJob& job) {
     const auto& facets = elements.facets();
     const auto count = static_cast<uint32_t>(facets.size());
     // All sides for the time being, each with its light: two elements to a facet.
-    Elements trial = elements.whole_facets();
+    const Elements trial = elements.whole_facets();
     std::vector<ElementLight> light(trial.size());
-    const LightingJob look{trial, job.illumination, job.seed, job.cancelled, job.rays};
-    light_elements(look, 0, light);
+    light_elements({trial, job.illumination, job.seed, job.cancelled, job.rays}, 0, light);
+    const Places places(trial);
+    const std::vector<uint32_t> met = look_around(trial, places, job);
 
-    std::vector<uint32_t> met(size_t{2} * count * kRays, kNoElement);
-    parallel_ranges(size_t{2} * count, 64, [&](size_t begin, size_t end) {
-        ElementTracer tracer(trial);
-        std::vector<ElementRay> rays;
-        std::vector<ElementHit> hits;
-        for (size_t side = begin; side < end && !*job.cancelled; ++side) {
-            const auto element = static_cast<uint32_t>(side);
-            make_hemisphere_rays(trial, element, element * 0x9E3779B9u, 0, kRays, rays);
-            hits.clear();
-            *job.rays += tracer.trace(rays, hits);
-            for (const ElementHit& hit : hits)
-                if (hit.element != kNoElement) met[side * kRays + hit.id] = hit.element;
-        }
-    });
-
-    Regions regions(size_t{2} * count);
     const auto exists = [&](uint32_t side) {
         return side % 2 == 0 || snapshot.materials[facets[side / 2].material].double_sided;
     };
-    std::vector<uint8_t> sees(size_t{2} * count, 0), lit(size_t{2} * count, 0);
-    for (uint32_t side = 0; side < 2 * count; ++side) {
-        if (!exists(side)) continue;
-        for (uint32_t k = 0; k < kRays; ++k) {
-            const uint32_t other = met[size_t{side} * kRays + k];
-            if (other == kNoElement || !exists(other)) continue;
-            sees[side] = 1;
-            regions.join(side, other);
-        }
-    }
+    std::vector<uint32_t> side_of(places.size());
     for (uint32_t side = 0; side < 2 * count; ++side)
-        if (exists(side) && (light[side].irradiance != Vec3(0, 0, 0) || light[side].emission != Vec3(0, 0, 0)))
-            lit[regions.find(side)] = 1;
+        std::fill_n(&side_of[places.first(side)], places.count(side), side);
+    Regions regions(places.size());
+    std::vector<uint8_t> sees(size_t{2} * count, 0), lit(places.size(), 0);
+    for (uint32_t place = 0; place < places.size(); ++place)
+        for (uint32_t k = 0; k < kRays; ++k) {
+            const uint32_t other = met[size_t{place} * kRays + k];
+            if (other == kNoElement || !exists(side_of[place]) || !exists(side_of[other])) continue;
+            sees[side_of[place]] = 1;
+            regions.join(place, other);
+        }
+    for (uint32_t side = 0; side < 2 * count; ++side)
+        for (uint32_t k = 0; k < places.count(side) && exists(side); ++k)
+            if (light[side].lit >> places.place_of(side, k) & 1) lit[regions.find(places.first(side) + k)] = 1;
+
     for (uint32_t facet = 0; facet < count; ++facet) {
         bool any = false;
-        for (uint32_t side = 0; side < 2; ++side)
+        for (uint32_t side = 0; side < 2; ++side) {
+            const uint32_t k = 2 * facet + side;
+            uint32_t dark = 0;  // places
+            for (uint32_t place = 0; place < places.count(k); ++place)
+                dark += !lit[regions.find(places.first(k) + place)];
             // What neither gets light nor gives any to another surface shows its own glow without an element.
-            if (const uint32_t k = 2 * facet + side;
-                exists(k) && lit[regions.find(k)] && (sees[k] || light[k].irradiance != Vec3(0, 0, 0))) {
-                elements.add_side(facet, static_cast<int>(side));
-                any = true;
-            }
+            if (!exists(k) || dark == places.count(k) || !(sees[k] || light[k].irradiance != Vec3(0, 0, 0))) continue;
+            elements.add_side(facet, static_cast<int>(side));
+            any = true;
+            const uint32_t root = facets[facet].roots[side];
+            for (uint32_t r = 0; dark > 0 && r < facets[facet].across * facets[facet].up; ++r)
+                elements.set_covered(root + r, 1);
+        }
         if (!any) elements.add_side(facet, exists(2 * facet + 1) && !sees[2 * facet] && sees[2 * facet + 1]);
-    }
-
-    // What sees sides without elements may be covered in part; of large facets so few rays may have missed it.
-    double all = 0;
-    for (const Facet& facet : facets) all += static_cast<double>(facet.area);
-    for (uint32_t side = 0; side < 2 * count; ++side) {
-        const Facet& facet = facets[side / 2];
-        const uint32_t root = facet.roots[side % 2];
-        if (root == kNoElement) continue;
-        const bool suspect =
-            static_cast<double>(facet.area) > kLarge * all ||
-            std::any_of(&met[size_t{side} * kRays], &met[size_t{side} * kRays] + kRays, [&](uint32_t other) {
-                return other != kNoElement && facets[other / 2].roots[other % 2] == kNoElement;
-            });
-        for (uint32_t k = 0; suspect && k < facet.across * facet.up; ++k) elements.set_covered(root + k, 1);
     }
 }
 
