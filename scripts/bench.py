@@ -85,6 +85,12 @@ BENCHMARKS = [
     raster("wireframe_1m", 0.25, "--side", "289", "--method", "wireframe"),
     raster("hidden_line_1m", 0.25, "--side", "289", "--method", "hidden_line"),
     Benchmark(["raster.scaling"], "raster_bench", "", ["--name", "raster.scaling", "--shape", "scaling"]),
+    Benchmark(
+        ["radiosity.cornell_box"],
+        "radiosity_bench",
+        "cornell_box",
+        ["--tolerance", "0.02", "0.01", "0.005", "--error-goal", "0.01", "--seconds-goal", "2"],
+    ),
     Benchmark(["edit", "cancel"], "edit_bench", "gallery", ["--edit-goal", "0.1", "--cancel-goal", "0.1"]),
 ]
 

@@ -20,6 +20,8 @@ constexpr double kNear = 0.4;     // points of the receiver differ by more of th
 constexpr double kRelativeError = 1e-3;
 constexpr double kUnseen = 0.1;  // what so few rays may miss of what stands in the way, of a receiver as large as
                                  // it is far away
+constexpr float kWide = 0.25f;   // of the distance
+constexpr uint32_t kRounds = 4;  // of rays between what is wide
 constexpr uint32_t kOfLink = kLinkPoints * kLinkPoints;
 
 }  // namespace
@@ -115,52 +117,79 @@ double LinkEvaluator::unseen_share(const Link& link) const {
     return kUnseen * static_cast<double>(std::min(1.0f, size / std::max(distance, 1e-37f)));
 }
 
+// What is large for its distance is looked at closer: a link that seems all hidden, or all seen, is not refined again.
+uint32_t LinkEvaluator::rounds_of(const Link& link) const {
+    const float size = std::sqrt(
+                    std::max(clusters_.area(elements_, link.receiver), clusters_.area(elements_, link.source))),
+                distance =
+                    (clusters_.centre(elements_, link.source) - clusters_.centre(elements_, link.receiver)).length();
+    return size > kWide * distance ? kRounds : 1;
+}
+
 uint64_t LinkEvaluator::group(std::span<Link> links) {
-    alignas(64) uint32_t keys[kBatch], indices[kBatch];
-    alignas(64) Lanes u, v;
-    double factors[kBatch / kLinkPoints] = {};
-    float weights[kBatch] = {};  // of the ways: what light would go along them
-    Places receivers[kBatch / kOfLink], sources[kBatch / kOfLink];
-    for (uint32_t lane = 0; lane < kBatch; ++lane) {
-        const Link& link = links[std::min<size_t>(lane / kOfLink, links.size() - 1)];
-        keys[lane] = (link.receiver * 0x9E3779B9u + link.source) * 0x85EBCA6Bu ^ seed_;
-        indices[lane] = lane % kOfLink;
-    }
-    random_pair_of(keys, indices, 0, u, v);
-    ways_.clear();
+    uint32_t rounds = 1;
+    const auto ways = std::make_unique<Ways>();
+    ways->free.clear();
     for (uint32_t number = 0; number < links.size(); ++number) {
         const Link& link = links[number];
-        receivers[number] = places_of(link.receiver);
-        sources[number] = places_of(link.source);
+        rounds = std::max(rounds, rounds_of(link));
+        const Places& receivers = ways->receivers[number] = places_of(link.receiver);
+        const Places& sources = ways->sources[number] = places_of(link.source);
         polygon_of_ = ~0u;
         for (uint32_t r = 0; r < kLinkPoints; ++r) {
-            const Place& place = receivers[number][r];
-            double& factor = factors[number * kLinkPoints + r];
-            factor = factor_at(place, sources[number], link.source);
-            if (!(factor > 0)) continue;
-            for (uint32_t k = 0; k < kLinkPoints; ++k) {
-                const Place& of = sources[number][k];
-                const auto lane = static_cast<int>(number * kOfLink + r * kLinkPoints + k);
-                const Vec3 way = of.point - place.point;
+            double& factor = ways->factors[number * kLinkPoints + r];
+            factor = factor_at(receivers[r], sources, link.source);
+            for (uint32_t k = 0; k < kLinkPoints && factor > 0; ++k) {
+                const Vec3 way = sources[k].point - receivers[r].point;
                 const float d2 = std::max(way.length2(), 1e-37f);
-                weights[lane] = std::max(way.dot(place.normal), 0.0f) * std::max(-way.dot(of.normal), 0.0f) /
-                                (d2 * std::max(d2, clusters_.area(elements_, link.source) / kLinkPoints));
-                // To any point of the quarter that is before both planes, as the factor has it.
-                const Vec3 to = elements_.point_in(of.part, u[lane], v[lane]), seen = to - place.point;
-                if (!(seen.dot(place.normal) > 0) || !(seen.dot(of.normal) < 0)) weights[lane] = 0;
-                if (weights[lane] > 0) ways_.set(lane, place.slot, place.point, place.normal, to);
+                ways->weights[number * kOfLink + r * kLinkPoints + k] =
+                    std::max(way.dot(receivers[r].normal), 0.0f) * std::max(-way.dot(sources[k].normal), 0.0f) /
+                    (d2 * std::max(d2, clusters_.area(elements_, link.source) / kLinkPoints));
             }
         }
     }
-    const uint64_t rays = ways_.trace();
-    for (uint32_t number = 0; number < links.size(); ++number)
-        finish(links[number], receivers[number], sources[number], &factors[number * kLinkPoints],
-               &weights[number * kOfLink], static_cast<int>(number * kOfLink));
+    uint64_t rays = 0;
+    for (uint32_t round = 0; round < rounds; ++round) rays += look(links, round, *ways);
+    for (uint32_t number = 0; number < links.size(); ++number) finish(links[number], number, *ways);
     return rays;
 }
 
-void LinkEvaluator::finish(Link& link, const Places& receivers, const Places& sources, const double* factors,
-                           const float* weights, int first_lane) {
+// A ray for each pair of parts that light would go between, from any point of the one to any of the other.
+uint64_t LinkEvaluator::look(std::span<const Link> links, uint32_t round, Ways& ways) {
+    alignas(64) uint32_t keys[kBatch], indices[kBatch];
+    alignas(64) Lanes u, v, s, t;
+    for (uint32_t lane = 0; lane < kBatch; ++lane) {
+        const Link& link = links[std::min<size_t>(lane / kOfLink, links.size() - 1)];
+        keys[lane] = (link.receiver * 0x9E3779B9u + link.source) * 0x85EBCA6Bu ^ seed_;
+        indices[lane] = round * kOfLink + lane % kOfLink;
+    }
+    random_pair_of(keys, indices, 0, u, v);
+    random_pair_of(keys, indices, 1, s, t);
+    rays_.clear();
+    for (uint32_t lane = 0; lane < links.size() * kOfLink; ++lane) {
+        if (!(ways.weights[lane] > 0)) continue;
+        const uint32_t number = lane / kOfLink;
+        const Place &place = ways.receivers[number][lane % kOfLink / kLinkPoints],
+                    &of = ways.sources[number][lane % kLinkPoints];
+        const Vec3 from = place.exposed == 1 ? elements_.point_in(place.part, s[lane], t[lane]) : place.point,
+                   to = elements_.point_in(of.part, u[lane], v[lane]), way = to - from;
+        // Before both planes, as the factor has it.
+        if (!(way.dot(place.normal) > 0) || !(way.dot(of.normal) < 0)) continue;
+        rays_.set(static_cast<int>(lane), place.slot, from, place.normal, to);
+        ++ways.looks[lane];
+    }
+    const uint64_t count = rays_.trace();
+    for (int lane = 0; lane < kBatch; ++lane) ways.free.set(lane, ways.free.get(lane) + rays_.free(lane));
+    return count;
+}
+
+void LinkEvaluator::finish(Link& link, uint32_t number, const Ways& ways) {
+    const Places &receivers = ways.receivers[number], &sources = ways.sources[number];
+    const double* const factors = &ways.factors[number * kLinkPoints];
+    const auto lane_of = [&](uint32_t r, uint32_t k) { return number * kOfLink + r * kLinkPoints + k; };
+    const auto weight_of = [&](uint32_t r, uint32_t k) {
+        return ways.looks[lane_of(r, k)] > 0 ? static_cast<double>(ways.weights[lane_of(r, k)]) : 0;
+    };
     // What each point of the receiver gets, of the source's mean and of its changes. Points count by what is not
     // covered around them.
     link.transfer.fill(0);
@@ -175,14 +204,17 @@ void LinkEvaluator::finish(Link& link, const Places& receivers, const Places& so
         counts[r] = static_cast<double>(receivers[r].exposed / exposed);
         if (counts[r] == 0) continue;
         const double factor = factors[r], counted = factor * counts[r];
-        double weight = 0, share = 0;
-        for (uint32_t k = 0; k < kLinkPoints; ++k) weight += static_cast<double>(weights[r * kLinkPoints + k]);
+        double weight = 0, share = 0, looks = 0;
+        for (uint32_t k = 0; k < kLinkPoints; ++k) weight += weight_of(r, k);
         for (uint32_t k = 0; k < kLinkPoints && weight > 0; ++k) {
-            const double part = static_cast<double>(weights[r * kLinkPoints + k]) / weight;
-            const Vec3 free = ways_.free(first_lane + static_cast<int>(r * kLinkPoints + k));
+            const double part = weight_of(r, k) / weight;
+            if (part == 0) continue;
+            const uint32_t lane = lane_of(r, k);
+            const Vec3 free = ways.free.get(static_cast<int>(lane)) / static_cast<float>(ways.looks[lane]);
             const double bright = part * static_cast<double>(luminance(free));
             colors += free * static_cast<float>(counted * part);
             share += bright;
+            looks += ways.looks[lane];
             arriving[r][0] += factor * bright;
             arriving[r][1] += factor * bright * static_cast<double>(sources[k].x);
             arriving[r][2] += factor * bright * static_cast<double>(sources[k].y);
@@ -193,7 +225,7 @@ void LinkEvaluator::finish(Link& link, const Places& receivers, const Places& so
         most = std::max(most, factor);
         seen += counted * share;
         seen2 += counted * share * share;
-        noise += counted * share * (1 - share) / kLinkPoints;
+        noise += counted * share * (1 - share) / std::max(looks, 1.0);
     }
     const bool clustered = is_cluster(link.receiver) || is_cluster(link.source);
     const auto exact = [&] {

@@ -30,7 +30,7 @@ inline constexpr uint32_t kLinkPoints = 4;  // of each end: the middles of its q
 class LinkEvaluator {
   public:
     LinkEvaluator(const Elements& elements, const ElementClusters& clusters, uint32_t seed)
-        : elements_(elements), clusters_(clusters), seed_(seed), ways_(elements.snapshot()) {}
+        : elements_(elements), clusters_(clusters), seed_(seed), rays_(elements.snapshot()) {}
     // Fills in factor and spread. Returns the number of rays.
     uint64_t evaluate(std::span<Link> links);
 
@@ -49,14 +49,23 @@ class LinkEvaluator {
     double factor_at(const Place& place, const Places& sources, NodeId source);
     float greatest_factor(const Link& link) const;
     double unseen_share(const Link& link) const;
+    // Of a group of links, between the parts of their ends: what light would go there, and how much rays found free.
+    struct Ways {
+        Places receivers[kBatch / (kLinkPoints * kLinkPoints)], sources[kBatch / (kLinkPoints * kLinkPoints)];
+        double factors[kBatch / kLinkPoints] = {};
+        float weights[kBatch] = {};
+        LaneVec3 free;  // the sum
+        uint32_t looks[kBatch] = {};
+    };
+    uint32_t rounds_of(const Link& link) const;
     uint64_t group(std::span<Link> links);
-    void finish(Link& link, const Places& receivers, const Places& sources, const double* factors, const float* weights,
-                int first_lane);
+    uint64_t look(std::span<const Link> links, uint32_t round, Ways& ways);
+    void finish(Link& link, uint32_t number, const Ways& ways);
 
     const Elements& elements_;
     const ElementClusters& clusters_;
     uint32_t seed_;
-    WayRays ways_;
+    WayRays rays_;
     std::vector<Vec3d> polygon_, receiver_;
     uint32_t polygon_of_ = ~0u;
 };
