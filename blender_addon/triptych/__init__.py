@@ -29,9 +29,9 @@ bl_info = {
 
 def _modules():
     # Imported on demand, so that `import triptych.gltf` works in a script that never registers.
-    from . import engine, export_operator, panels, properties, ray_tree, ray_tree_panel, shading_sheet
+    from . import engine, export_operator, panels, properties, radiosity, ray_tree, ray_tree_panel, shading_sheet
 
-    return (properties, engine, panels, export_operator, shading_sheet, ray_tree, ray_tree_panel)
+    return (properties, engine, radiosity, panels, export_operator, shading_sheet, ray_tree, ray_tree_panel)
 
 
 _registered = []

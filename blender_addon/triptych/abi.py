@@ -374,6 +374,11 @@ FUNCTIONS = {
     "render_write": (i32, _handle, text),
     "render_trace_tree": (i32, _handle, u32, u32, c.POINTER(u32)),
     "render_ray": (i32, _handle, u32, c.POINTER(Ray)),
+    "render_set_radiosity": (i32, _handle, _handle),
+    "radiosity_create": (i32, _handle, c.POINTER(_handle)),
+    "radiosity_destroy": (None, _handle),
+    "radiosity_set": (i32, _handle, c.c_char_p, c.c_char_p),
+    "radiosity_solve": (i32, _handle, c.POINTER(Callbacks)),
     "render_statistics": (i32, _handle, c.POINTER(Statistics)),
 }
 

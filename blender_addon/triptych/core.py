@@ -309,6 +309,56 @@ class Ray:
             setattr(self, name, tuple(getattr(row, name)))
 
 
+def _run(name, handle, progress=None, tile=None, log=None):
+    """A call that takes callbacks; False where it was cancelled. See Render.run."""
+    raised = []
+
+    def guarded(function, convert):
+        def called(_, argument):
+            if raised:
+                return 0
+            try:
+                return 1 if function(convert(argument)) else 0
+            except BaseException as error:  # nothing may pass through C
+                raised.append(error)
+                return 0
+
+        return called
+
+    callbacks = abi.init("callbacks", abi.Callbacks)
+    if progress is not None:
+        callbacks.progress = abi.ProgressFunction(guarded(progress, lambda pointer: pointer.contents))
+    if tile is not None:
+        callbacks.tile = abi.TileFunction(guarded(tile, lambda pointer: pointer.contents))
+    if log is not None:
+        callbacks.log = abi.LogFunction(guarded(log, lambda line: line.decode(errors="replace")))
+    status = abi.call(name, handle, c.byref(callbacks))
+    if raised:
+        raise raised[0]
+    return status != abi.CANCELLED
+
+
+class Radiosity:
+    """A radiosity solution of a scene's last commit, which it outlives. Close it."""
+
+    def __init__(self, scene):
+        self._handle = c.c_void_p()
+        abi.call("radiosity_create", scene._handle, c.byref(self._handle))
+
+    def close(self):
+        if self._handle:
+            abi.library().trp_radiosity_destroy(self._handle)
+            self._handle = c.c_void_p()
+
+    def set(self, name, value):
+        """A setting, as text; before the first step."""
+        abi.call("radiosity_set", self._handle, name.encode(), value.encode())
+
+    def solve(self, progress=None):
+        """Goes on until it is solved; False where it was cancelled, which leaves what was done. See Render.run."""
+        return _run("radiosity_solve", self._handle, progress)
+
+
 class Render:
     """A render of a scene's last commit by a method. Use it as a context manager."""
 
@@ -341,31 +391,11 @@ class Render:
         progress(abi.Progress), tile(abi.Tile) and log(str) are called on this thread; a false answer cancels. What a
         callback raises cancels the render and is raised from here.
         """
-        raised = []
+        return _run("render_run", self._handle, progress, tile, log)
 
-        def guarded(function, convert):
-            def called(_, argument):
-                if raised:
-                    return 0
-                try:
-                    return 1 if function(convert(argument)) else 0
-                except BaseException as error:  # nothing may pass through C
-                    raised.append(error)
-                    return 0
-
-            return called
-
-        callbacks = abi.init("callbacks", abi.Callbacks)
-        if progress is not None:
-            callbacks.progress = abi.ProgressFunction(guarded(progress, lambda pointer: pointer.contents))
-        if tile is not None:
-            callbacks.tile = abi.TileFunction(guarded(tile, lambda pointer: pointer.contents))
-        if log is not None:
-            callbacks.log = abi.LogFunction(guarded(log, lambda line: line.decode(errors="replace")))
-        status = abi.call("render_run", self._handle, c.byref(callbacks))
-        if raised:
-            raise raised[0]
-        return status != abi.CANCELLED
+    def show(self, radiosity):
+        """Has it show a Radiosity as it is now. Error STATE where that is of another scene, or has not been begun."""
+        abi.call("render_set_radiosity", self._handle, radiosity._handle)
 
     def cancel(self):
         """Any thread."""

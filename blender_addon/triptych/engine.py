@@ -7,7 +7,7 @@ import time
 import bpy
 import numpy as np
 
-from . import abi, compat, core, data, export_motion, properties, settings
+from . import abi, compat, core, data, export_motion, properties, radiosity, settings
 from .export_scene import export_scene, film_size
 
 _DISPLAY_SECONDS = 0.2  # between updates of the picture while it renders
@@ -92,8 +92,16 @@ class _Job:
                     self.passes = properties.wanted_passes(depsgraph.view_layer, method)
                 for row, _ in self.passes:
                     render.add_pass(row.name)
+                if method != "radiosity":
+                    if not engine.is_preview:
+                        radiosity.forget()
+                elif not radiosity.show(core_scene, render, values, self._progress):
+                    return ""
                 try:
-                    render.run(self._progress, None if bpy.app.background else self._tile)
+                    if self.stopped():  # a solution that is not whole is shown without asking again
+                        render.run()
+                    else:
+                        render.run(self._progress, None if bpy.app.background else self._tile)
                     self.finish()
                 finally:
                     self.render = None
