@@ -21,7 +21,7 @@ struct Scratch {
     Coefficients coefficients;
     LightScratch lights;
     ProgramScratch program;
-    LaneVec3 irradiance;
+    LaneVec3 irradiance, again;  // by two samples of each light
     alignas(64) uint32_t keys[kBatch], indices[kBatch];
 };
 
@@ -47,10 +47,10 @@ void set_footprints(const LightingJob& job, uint32_t element, int lane, Points& 
     points.b1_dy[lane] = points.b2_dx[lane] = 0;
 }
 
-void add_lamps(const LightingJob& job, Scratch& w) {
+void add_lamps(const LightingJob& job, Scratch& w, LaneVec3& irradiance) {
     const Snapshot& snapshot = job.elements.snapshot();
     const Illumination& illumination = job.illumination;
-    w.irradiance.clear();
+    irradiance.clear();
     for (size_t l = 0; l < snapshot.lights.size() && !*job.cancelled; ++l) {
         const ReadyLight& light = snapshot.lights[l];
         if (light.kind == ReadyLight::Kind::surface) continue;  // its elements shine themselves
@@ -70,7 +70,7 @@ void add_lamps(const LightingJob& job, Scratch& w) {
             const float cosine = std::max(w.points.geometric_normal.get(i).dot(lights.samples.direction.get(i)), 0.0f);
             const Vec3 seen = shadows ? lights.visibility.get(i) : Vec3(1, 1, 1);
             const Vec3 light_there = lights.samples.light.get(i) * seen * (cosine * std::numbers::pi_v<float>);
-            w.irradiance.set(i, w.irradiance.get(i) + light_there);
+            irradiance.set(i, irradiance.get(i) + light_there);
         }
     }
 }
@@ -82,7 +82,7 @@ ElementLight mean(const Elements& elements, uint32_t element, int first, const S
     ElementLight out;
     if (covered == kAllCovered) return out;
     const float share = 1.0f / static_cast<float>(kPlaces - static_cast<uint32_t>(std::popcount(covered)));
-    double squares = 0;
+    double squares = 0, chance = 0;
     Moments places;
     Vec3 by_x(0, 0, 0), by_y(0, 0, 0);
     float x_mean = 0, y_mean = 0;
@@ -97,7 +97,9 @@ ElementLight mean(const Elements& elements, uint32_t element, int first, const S
             out.reflectance[c] += share * std::clamp(reflectance[c], 0.0f, kGreatestReflectance);
         }
         out.emission += w.coefficients.emission.get(i) * (share * alpha * std::numbers::pi_v<float>);
-        const Vec3 irradiance = w.irradiance.get(i);
+        const Vec3 irradiance = (w.irradiance.get(i) + w.again.get(i)) * 0.5f;
+        const float differs = luminance(w.irradiance.get(i) - w.again.get(i)) / 2;
+        chance += static_cast<double>(differs * differs * share);
         if (irradiance != Vec3(0, 0, 0) || w.coefficients.emission.get(i) != Vec3(0, 0, 0))
             out.lit = static_cast<uint16_t>(out.lit | 1u << k);
         out.irradiance += irradiance * share;
@@ -117,11 +119,12 @@ ElementLight mean(const Elements& elements, uint32_t element, int first, const S
     const Moments fit = places.inverse();
     out.irradiance_x = by_x * static_cast<float>(fit.xx) + by_y * static_cast<float>(fit.xy);
     out.irradiance_y = by_x * static_cast<float>(fit.xy) + by_y * static_cast<float>(fit.yy);
+    // What samples differ by at one place is chance, and no reason to divide an element; of it, the two numbers of a
+    // line explain as much as of anything that is scattered over 16 places: what is not well beyond that is not kept.
     const double bright = luminance(out.irradiance),
                  explained = places.of(luminance(out.irradiance_x), luminance(out.irradiance_y)),
                  rest = std::max(squares - bright * bright - explained, 0.0);
-    out.unevenness = static_cast<float>(std::sqrt(rest));
-    // Of samples that differ by chance alone, a line explains 2 parts in 15: no more than what is beyond that is kept.
+    out.unevenness = static_cast<float>(std::sqrt(std::max(rest - chance, 0.0)));
     const auto sure = static_cast<float>(std::max(1 - kByChance * rest / std::max(explained, 1e-300), 0.0));
     out.irradiance_x *= sure;
     out.irradiance_y *= sure;
@@ -146,7 +149,12 @@ void light_elements(const LightingJob& job, uint32_t first, std::span<ElementLig
                 set_footprints(job, first + static_cast<uint32_t>(from) + lane / kPlaces, static_cast<int>(lane),
                                w->points);
             evaluate(job.elements.snapshot(), w->points, w->coefficients, w->program);
-            add_lamps(job, *w);
+            add_lamps(job, *w, w->irradiance);
+            for (uint32_t& index : w->indices) index += kPlaces;
+            if (job.twice)
+                add_lamps(job, *w, w->again);
+            else
+                w->again = w->irradiance;
             for (size_t k = 0; k < count; ++k)
                 out[from + k] =
                     mean(job.elements, first + static_cast<uint32_t>(from + k), static_cast<int>(k * kPlaces), *w);

@@ -26,6 +26,7 @@ struct LightingJob {
     uint32_t seed = 0;
     std::atomic<bool>* cancelled = nullptr;
     std::atomic<uint64_t>* rays = nullptr;
+    bool twice = true;  // two samples of each light at each place, which say what of the unevenness is chance
 };
 
 inline constexpr float kGreatestReflectance = 0.999f;

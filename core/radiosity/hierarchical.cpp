@@ -22,12 +22,13 @@
 namespace trp {
 namespace {
 
-constexpr size_t kGrain = 1024;  // links that a thread takes at a time
-constexpr double kCoherent = 0.5;
+constexpr size_t kGrain = 1024;      // links that a thread takes at a time
+constexpr double kCoherent = 0.5;    // of what differs within a source, what is wrong the same way where half is hidden
 constexpr double kUnevenness = 0.5;  // of a lamp's light over an element, what is left as an error
 constexpr uint32_t kMostSweeps = 500;
-constexpr size_t kMost =
-    1 << 20;  // links and elements; then the solution is left as it is, and its residual says how good
+// Links and elements; then the solution is left as it is, and its residual says how good. Four times the elements that
+// it begins with, where that is more.
+constexpr size_t kMost = 1 << 19;
 constexpr float kSmallest = 1.0f / 1024;  // side of an element, of the scene's extent, where no size is given
 
 // Whether a part of each of two elements lies before the other's plane.
@@ -78,7 +79,7 @@ class HierarchicalSolver : public Solver {
     LinkError link_error(const Link& link) const;
     double measure(const SolverJob& job);
     bool refine(const SolverJob& job);
-    bool is_full() const { return links_.size() + element_nodes_.size() > kMost; }
+    bool is_full() const { return links_.size() + element_nodes_.size() > most_; }
     float extent(const Elements& elements, NodeId id) const;
     struct Children {
         NodeId ids[4];
@@ -100,6 +101,7 @@ class HierarchicalSolver : public Solver {
     std::vector<Link> links_;         // by receiver
     std::vector<size_t> first_link_;  // by place of the receiver, and the end
     float least_area_ = 0;
+    size_t most_ = kMost;
     bool begun_ = false;
     double tolerance_ = 0;
 };
@@ -148,6 +150,7 @@ bool HierarchicalSolver::begin(const SolverJob& job) {
     if (job.cancelled) return false;
     links_ = std::move(links);
     job.solution.slopes.assign(elements.size(), {});
+    most_ = std::max(kMost, 4 * size_t{elements.size()});
     begun_ = true;
     return true;
 }

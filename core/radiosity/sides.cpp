@@ -111,7 +111,7 @@ void add_sides(Elements& elements, const LightingJob& job) {
     // All sides for the time being, each with its light: two elements to a facet.
     const Elements trial = elements.whole_facets();
     std::vector<ElementLight> light(trial.size());
-    light_elements({trial, job.illumination, job.seed, job.cancelled, job.rays}, 0, light);
+    light_elements({trial, job.illumination, job.seed, job.cancelled, job.rays, false}, 0, light);
     const Places places(trial);
     const std::vector<uint32_t> met = look_around(trial, places, job);
 
