@@ -203,14 +203,15 @@ bool Rasterizer::see(const TileWork& work, uint32_t number, int layer, Workspace
     return true;
 }
 
-// A block whose samples' keys are known, each surface of a pixel shaded once, at its sample that is nearest to the
-// pixel's centre. Returns false, with nothing added, where a surface is seen through.
+// A block whose samples' keys are known, each surface of a pixel shaded once: at the pixel's centre where it shows in
+// all of the pixel, else at its sample that is nearest to there. Returns false, with nothing added, where a surface is
+// seen through.
 bool Rasterizer::merge(uint32_t place, Workspace& w) const {
     const auto samples = static_cast<uint32_t>(pattern.size());
     const BlockKeys keys{&w.keys[size_t{place} * kBatch], w.visibility.pixels(), samples};
     const SampleGroups groups(list, evaluation == Evaluation::polygon);
     const auto [x, y] = corner_of(place, w.visibility);
-    BlockSamples at(x, y, pattern[0].x, pattern[0].y);
+    BlockSamples at(x, y);
     const BlockSums sums = job.film->block(x / kBlockSide, y / kBlockSide);
     alignas(64) uint32_t left[kBatch];  // samples that are not yet shown, by their bits
     std::fill_n(left, kBatch, samples == 32 ? ~0u : (1u << samples) - 1);
@@ -219,8 +220,11 @@ bool Rasterizer::merge(uint32_t place, Workspace& w) const {
     for (uint32_t round = 0; any_left; ++round) {
         SampleGroup& group = w.group;
         any_left = groups.take(keys, left, group);
-        if (round > 0)
-            for (int i = 0; i < kBatch; ++i) at.set(i, pattern[group.first[i]].x, pattern[group.first[i]].y);
+        for (int i = 0; i < kBatch; ++i) {
+            const bool whole = group.count[i] == static_cast<float>(samples);
+            const SampleOffset offset = whole ? SampleOffset{} : pattern[group.first[i]];
+            at.set(i, offset.x, offset.y);
+        }
         uint8_t any_missed = 0;
         for (int i = 0; i < kBatch; ++i) any_missed |= w.missed[i] = (group.key[i] == kNothing) & (group.count[i] > 0);
         for (int c = 0; c < 3; ++c) std::copy_n(group.count, kBatch, w.shares[c]);

@@ -341,6 +341,22 @@ TEST(Raster, EdgeSamplesCoverAsMuchAsTheShape) {
     }
 }
 
+TEST(Raster, WholePixelsAreShadedAtTheirCentres) {
+    // A floor that fills the picture, two triangles, under a lamp close above it: with smoothed edges or without.
+    Scene scene;
+    scene.object(floor_square(4), scene.diffuse(0.5f, 0.5f, 0.5f));
+    scene.light(TRP_LIGHT_POINT, {1, 1, 1}, look_at({0.3f, 0.2f, 0.2f}, {0, 0, 0}));
+    scene.camera_above(2);
+    scene.commit();
+    const Settings box = {{"film.filter", "box"}, {"film.filter_width", "1"}};
+    const Image centres = Render(scene, 32, 32, with(box, {{"raster.samples", "1"}}), {}, "phong").run().read();
+    for (const char* samples : {"4", "8", "32"}) {
+        const Image smooth = Render(scene, 32, 32, with(box, {{"raster.samples", samples}}), {}, "phong").run().read();
+        for (size_t i = 0; i < centres.values.size(); ++i)
+            ASSERT_FLOAT_EQ(smooth.values[i], centres.values[i]) << samples << ", value " << i;
+    }
+}
+
 TEST(Raster, DrawsAnyGeometry) {
     // Behind the eye, through its plane and in it, slivers, points, far away, and very many in one pixel.
     const std::vector<Vec> corners = {
