@@ -89,7 +89,7 @@ BENCHMARKS = [
         ["radiosity.cornell_box"],
         "radiosity_bench",
         "cornell_box",
-        ["--tolerance", "0.02", "0.01", "0.005", "--error-goal", "0.01", "--seconds-goal", "2"],
+        ["--tolerance", "0.008", "--size", "192", "--error-goal", "0.01", "--seconds-goal", "2"],
     ),
     Benchmark(["edit", "cancel"], "edit_bench", "gallery", ["--edit-goal", "0.1", "--cancel-goal", "0.1"]),
 ]

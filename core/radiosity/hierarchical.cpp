@@ -25,6 +25,7 @@ namespace {
 constexpr size_t kGrain = 1024;      // links that a thread takes at a time
 constexpr double kCoherent = 0.5;    // of what differs within a source, what is wrong the same way where half is hidden
 constexpr double kUnevenness = 0.5;  // of a lamp's light over an element, what is left as an error
+constexpr double kChance = 0.125;    // of the tolerance, what chance may do to what a link brings
 constexpr uint32_t kMostSweeps = 500;
 // Links and elements; then the solution is left as it is, and its residual says how good. Four times the elements that
 // it begins with, where that is more.
@@ -73,10 +74,13 @@ class HierarchicalSolver : public Solver {
     // Irradiance that a link may be wrong by: for what no line follows over the receiver and within the source, and for
     // what of the source is hidden, which is likely darker than the rest, so that many links err the same way.
     struct LinkError {
-        double over_receiver, within_source, coherent;
-        double squares() const { return (over_receiver + within_source) * (over_receiver + within_source); }
+        double over_receiver, within_source, coherent, chance;
+        double squares() const {
+            return (over_receiver + within_source) * (over_receiver + within_source) + chance * chance;
+        }
     };
     LinkError link_error(const Link& link) const;
+    float allowed(const Link& link) const;
     double measure(const SolverJob& job);
     bool refine(const SolverJob& job);
     bool is_full() const { return links_.size() + element_nodes_.size() > most_; }
@@ -145,11 +149,14 @@ bool HierarchicalSolver::begin(const SolverJob& job) {
     const float size = job.settings.radiosity.element_size,
                 smallest = clusters_.clusters.empty() ? 0 : 2 * clusters_.clusters[0].radius * kSmallest;
     least_area_ = size > 0 ? size * size / 4 : smallest * smallest;
+    // What is allowed to chance, by what surfaces emit.
+    job.solution.slopes.assign(elements.size(), {});
+    measure(job);
     std::vector<Link> links = first_links(elements);
+    for (Link& link : links) link.allowed = allowed(link);
     evaluate(job, links);
     if (job.cancelled) return false;
     links_ = std::move(links);
-    job.solution.slopes.assign(elements.size(), {});
     most_ = std::max(kMost, 4 * size_t{elements.size()});
     begun_ = true;
     return true;
@@ -333,7 +340,15 @@ HierarchicalSolver::LinkError HierarchicalSolver::link_error(const Link& link) c
     const Node& source = node(link.source);
     const double within = luminance(link.factor()) * std::sqrt(static_cast<double>(source.variance));
     return {static_cast<double>(link.spread) * brightness(source.radiosity.mean), within,
-            kCoherent * within * static_cast<double>(link.hidden)};
+            kCoherent * within * static_cast<double>(link.hidden),
+            static_cast<double>(link.chance) * brightness(source.radiosity.mean)};
+}
+
+// What chance may do to the factor of a link, or of those that take its place.
+float HierarchicalSolver::allowed(const Link& link) const {
+    const double carried =
+        brightness(node(link.source).radiosity.mean) * static_cast<double>(node(link.receiver).reflectance);
+    return static_cast<float>(kChance * tolerance_ / std::max(carried, 1e-30));
 }
 
 // The estimated mean square error of the solution, with the errors of all nodes.
@@ -387,8 +402,9 @@ bool HierarchicalSolver::refine(const SolverJob& job) {
         const bool receivers = !elements[link.receiver].leaf() || may_divide(elements, link.receiver),
                    sources = !elements[link.source].leaf();
         if (!receivers && !sources) return Part::none;
-        return receivers && (!sources || error.over_receiver >= error.within_source + error.coherent) ? Part::receiver
-                                                                                                      : Part::source;
+        return receivers && (!sources || error.over_receiver >= error.within_source + error.coherent + error.chance)
+                   ? Part::receiver
+                   : Part::source;
     };
     std::vector<Part> parts(links_.size(), Part::none);
     std::vector<double> shares(links_.size() + old_size, 0.0);
@@ -428,7 +444,9 @@ bool HierarchicalSolver::refine(const SolverJob& job) {
         if (!is_cluster(split) && elements[split].leaf()) elements.divide(split);
         const Children below = children(elements, split);
         for (const NodeId part : std::span(below.ids, below.count)) {
-            const Link next = by_receiver ? Link{part, link.source} : Link{link.receiver, part};
+            Link next{by_receiver ? part : link.receiver, by_receiver ? link.source : part};
+            next.agreed = link.agreed / static_cast<float>(below.count);
+            next.allowed = allowed(link);
             if (is_cluster(next.receiver) || is_cluster(next.source) || may_see(elements, next.receiver, next.source))
                 fresh.push_back(next);
         }

@@ -18,19 +18,20 @@ constexpr double kCurved = 0.06;  // of the square of a relative difference over
 constexpr double kShadow = 0.5;   // of differences in what points see, what a line leaves
 constexpr double kNear = 0.4;     // points of the receiver differ by more of their mean: it is close to the source
 constexpr double kRelativeError = 1e-3;
-constexpr double kUnseen = 0.1;  // what so few rays may miss of what stands in the way, of a receiver as large as
-                                 // it is far away
-constexpr float kWide = 0.25f;   // of the distance
-constexpr uint32_t kRounds = 4;  // of rays between what is wide
-constexpr uint32_t kOfLink = kLinkPoints * kLinkPoints;
+constexpr double kUnseen = 0.1;      // what rays between few parts may miss of what stands in the way, of a receiver as
+                                     // large as it is far away
+constexpr float kWide = 0.25f;       // of the distance
+constexpr double kSurprise = 0.3;    // of the share of one ray more, where all so far found the same
+constexpr float kNearest = 0.1f;     // of a part's area: the least square of a distance that is told from others
+constexpr uint32_t kWideRounds = 4;  // of rays between what is wide
+constexpr uint32_t kMostRounds = 32;  // where chance would do too much
 
 }  // namespace
 
 uint64_t LinkEvaluator::evaluate(std::span<Link> links) {
-    constexpr size_t kInGroup = kBatch / kOfLink;
     uint64_t rays = 0;
     for (size_t first = 0; first < links.size(); first += kInGroup)
-        rays += group(links.subspan(first, std::min(kInGroup, links.size() - first)));
+        rays += group(links.subspan(first, std::min<size_t>(kInGroup, links.size() - first)));
     return rays;
 }
 
@@ -118,21 +119,63 @@ double LinkEvaluator::unseen_share(const Link& link) const {
 }
 
 // What is large for its distance is looked at closer: a link that seems all hidden, or all seen, is not refined again.
-uint32_t LinkEvaluator::rounds_of(const Link& link) const {
+uint32_t LinkEvaluator::first_rounds(const Link& link) const {
     const float size = std::sqrt(
                     std::max(clusters_.area(elements_, link.receiver), clusters_.area(elements_, link.source))),
                 distance =
                     (clusters_.centre(elements_, link.source) - clusters_.centre(elements_, link.receiver)).length();
-    return size > kWide * distance ? kRounds : 1;
+    return size > kWide * distance ? kWideRounds : 1;
+}
+
+LinkEvaluator::Seen LinkEvaluator::seen_of(uint32_t number, const Ways& ways) const {
+    Seen out;
+    for (uint32_t r = 0; r < kLinkPoints; ++r) {
+        const double factor = ways.factors[number * kLinkPoints + r];
+        double weight = 0, share = 0;
+        uint32_t looks = 0;
+        for (uint32_t k = 0; k < kLinkPoints; ++k) {
+            const uint32_t lane = number * kOfLink + r * kLinkPoints + k;
+            weight += static_cast<double>(ways.kernels[lane]);
+            share += static_cast<double>(luminance(ways.free.get(static_cast<int>(lane))));
+            looks += ways.looks[lane];
+        }
+        if (!(weight > 0)) continue;
+        share /= weight;
+        if (std::abs(share - 0.5) > 0.4999) share = std::round(share);  // all alike, but for rounding
+        out.mean += factor;
+        out.seen += factor * share;
+        out.within += factor * factor * share * (1 - share) / looks;
+        out.looks += looks;
+    }
+    if (!(out.mean > 0)) return out;
+    out.seen /= out.mean;
+    out.alike = out.seen == 0 || out.seen == 1;
+    out.within /= out.mean * out.mean;
+    out.mean /= kLinkPoints;
+    return out;
+}
+
+// The standard deviation of the share. Of rays that all found the same, the next one may not.
+double LinkEvaluator::Seen::chance(float agreed) const {
+    const double most = kSurprise / (2 + looks + (alike ? static_cast<double>(agreed) : 0));
+    return std::sqrt(within + most * most);
+}
+
+uint32_t LinkEvaluator::more_rounds(const Link& link, const Seen& seen) const {
+    const double chance = seen.mean * seen.chance(link.agreed), allowed = static_cast<double>(link.allowed);
+    if (seen.looks == 0 || !(chance > allowed) || is_cluster(link.receiver) || is_cluster(link.source)) return 0;
+    // As the square root of the number, or, where all are alike, as the number.
+    const double times = !seen.alike ? chance * chance / (allowed * allowed) : chance / allowed;
+    return static_cast<uint32_t>(std::min(times * seen.looks / kOfLink, double{kMostRounds}));
 }
 
 uint64_t LinkEvaluator::group(std::span<Link> links) {
-    uint32_t rounds = 1;
     const auto ways = std::make_unique<Ways>();
+    std::vector<Round> rounds;
     ways->free.clear();
     for (uint32_t number = 0; number < links.size(); ++number) {
         const Link& link = links[number];
-        rounds = std::max(rounds, rounds_of(link));
+        for (uint32_t round = 0; round < first_rounds(link); ++round) rounds.push_back({number, round});
         const Places& receivers = ways->receivers[number] = places_of(link.receiver);
         const Places& sources = ways->sources[number] = places_of(link.source);
         polygon_of_ = ~0u;
@@ -141,45 +184,65 @@ uint64_t LinkEvaluator::group(std::span<Link> links) {
             factor = factor_at(receivers[r], sources, link.source);
             for (uint32_t k = 0; k < kLinkPoints && factor > 0; ++k) {
                 const Vec3 way = sources[k].point - receivers[r].point;
-                const float d2 = std::max(way.length2(), 1e-37f);
-                ways->weights[number * kOfLink + r * kLinkPoints + k] =
-                    std::max(way.dot(receivers[r].normal), 0.0f) * std::max(-way.dot(sources[k].normal), 0.0f) /
-                    (d2 * std::max(d2, clusters_.area(elements_, link.source) / kLinkPoints));
+                ways->open[number * kOfLink + r * kLinkPoints + k] =
+                    way.dot(receivers[r].normal) > 0 && way.dot(sources[k].normal) < 0;
             }
         }
     }
-    uint64_t rays = 0;
-    for (uint32_t round = 0; round < rounds; ++round) rays += look(links, round, *ways);
+    uint64_t rays = look(links, rounds, *ways);
+    rounds.clear();
+    for (uint32_t number = 0; number < links.size(); ++number) {
+        const uint32_t first = first_rounds(links[number]), more = more_rounds(links[number], seen_of(number, *ways));
+        for (uint32_t round = first; round < first + more; ++round) rounds.push_back({number, round});
+    }
+    rays += look(links, rounds, *ways);
     for (uint32_t number = 0; number < links.size(); ++number) finish(links[number], number, *ways);
     return rays;
 }
 
-// A ray for each pair of parts that light would go between, from any point of the one to any of the other.
-uint64_t LinkEvaluator::look(std::span<const Link> links, uint32_t round, Ways& ways) {
+// In each round, a ray for each pair of parts that light would go between, from any point of the one to any of the
+// other.
+uint64_t LinkEvaluator::look(std::span<const Link> links, std::span<const Round> rounds, Ways& ways) {
     alignas(64) uint32_t keys[kBatch], indices[kBatch];
-    alignas(64) Lanes u, v, s, t;
-    for (uint32_t lane = 0; lane < kBatch; ++lane) {
-        const Link& link = links[std::min<size_t>(lane / kOfLink, links.size() - 1)];
-        keys[lane] = (link.receiver * 0x9E3779B9u + link.source) * 0x85EBCA6Bu ^ seed_;
-        indices[lane] = round * kOfLink + lane % kOfLink;
+    alignas(64) Lanes u, v, s, t, kernels;
+    uint64_t count = 0;
+    for (size_t first = 0; first < rounds.size(); first += kInGroup) {
+        const auto group = rounds.subspan(first, std::min<size_t>(kInGroup, rounds.size() - first));
+        for (uint32_t lane = 0; lane < kBatch; ++lane) {
+            const Round& of = group[std::min<size_t>(lane / kOfLink, group.size() - 1)];
+            const Link& link = links[of.number];
+            // The pairs share the first round's points; after that each has a sequence of its own.
+            const uint32_t pair = lane % kOfLink, sequence = of.round == 0 ? 0 : pair + 1;
+            keys[lane] = ((link.receiver * 0x9E3779B9u + link.source) * 0x85EBCA6Bu ^ seed_) + sequence * 0xC2B2AE35u;
+            indices[lane] = of.round == 0 ? pair : of.round - 1;
+        }
+        random_pair_of(keys, indices, 0, u, v);
+        random_pair_of(keys, indices, 1, s, t);
+        rays_.clear();
+        std::fill_n(kernels, kBatch, 0.0f);
+        for (uint32_t lane = 0; lane < group.size() * kOfLink; ++lane) {
+            const uint32_t number = group[lane / kOfLink].number, pair = lane % kOfLink, at = number * kOfLink + pair;
+            if (!ways.open[at]) continue;
+            const Place &place = ways.receivers[number][pair / kLinkPoints],
+                        &of = ways.sources[number][pair % kLinkPoints];
+            const Vec3 from = place.exposed == 1 ? elements_.point_in(place.part, s[lane], t[lane]) : place.point,
+                       to = elements_.point_in(of.part, u[lane], v[lane]), way = to - from;
+            // What is near counts for more, and is less likely to be hidden.
+            const float d2 = std::max(way.length2(), 1e-37f), least = of.part.area * kNearest;
+            kernels[lane] = std::max(way.dot(place.normal), 0.0f) * std::max(-way.dot(of.normal), 0.0f) /
+                            (d2 * std::max(d2, least));
+            if (!(kernels[lane] > 0)) continue;
+            rays_.set(static_cast<int>(lane), place.slot, from, place.normal, to);
+            ways.kernels[at] += kernels[lane];
+            ++ways.looks[at];
+        }
+        count += rays_.trace();
+        for (uint32_t lane = 0; lane < group.size() * kOfLink; ++lane) {
+            const auto at = static_cast<int>(group[lane / kOfLink].number * kOfLink + lane % kOfLink);
+            if (kernels[lane] > 0)
+                ways.free.set(at, ways.free.get(at) + rays_.free(static_cast<int>(lane)) * kernels[lane]);
+        }
     }
-    random_pair_of(keys, indices, 0, u, v);
-    random_pair_of(keys, indices, 1, s, t);
-    rays_.clear();
-    for (uint32_t lane = 0; lane < links.size() * kOfLink; ++lane) {
-        if (!(ways.weights[lane] > 0)) continue;
-        const uint32_t number = lane / kOfLink;
-        const Place &place = ways.receivers[number][lane % kOfLink / kLinkPoints],
-                    &of = ways.sources[number][lane % kLinkPoints];
-        const Vec3 from = place.exposed == 1 ? elements_.point_in(place.part, s[lane], t[lane]) : place.point,
-                   to = elements_.point_in(of.part, u[lane], v[lane]), way = to - from;
-        // Before both planes, as the factor has it.
-        if (!(way.dot(place.normal) > 0) || !(way.dot(of.normal) < 0)) continue;
-        rays_.set(static_cast<int>(lane), place.slot, from, place.normal, to);
-        ++ways.looks[lane];
-    }
-    const uint64_t count = rays_.trace();
-    for (int lane = 0; lane < kBatch; ++lane) ways.free.set(lane, ways.free.get(lane) + rays_.free(lane));
     return count;
 }
 
@@ -187,13 +250,11 @@ void LinkEvaluator::finish(Link& link, uint32_t number, const Ways& ways) {
     const Places &receivers = ways.receivers[number], &sources = ways.sources[number];
     const double* const factors = &ways.factors[number * kLinkPoints];
     const auto lane_of = [&](uint32_t r, uint32_t k) { return number * kOfLink + r * kLinkPoints + k; };
-    const auto weight_of = [&](uint32_t r, uint32_t k) {
-        return ways.looks[lane_of(r, k)] > 0 ? static_cast<double>(ways.weights[lane_of(r, k)]) : 0;
-    };
+    const auto weight_of = [&](uint32_t r, uint32_t k) { return static_cast<double>(ways.kernels[lane_of(r, k)]); };
     // What each point of the receiver gets, of the source's mean and of its changes. Points count by what is not
     // covered around them.
     link.transfer.fill(0);
-    link.spread = link.hidden = 0;
+    link.spread = link.hidden = link.chance = 0;
     float exposed = 0;
     for (const Place& place : receivers) exposed += place.exposed;
     Vec3 colors(0, 0, 0);
@@ -210,7 +271,7 @@ void LinkEvaluator::finish(Link& link, uint32_t number, const Ways& ways) {
             const double part = weight_of(r, k) / weight;
             if (part == 0) continue;
             const uint32_t lane = lane_of(r, k);
-            const Vec3 free = ways.free.get(static_cast<int>(lane)) / static_cast<float>(ways.looks[lane]);
+            const Vec3 free = ways.free.get(static_cast<int>(lane)) / ways.kernels[lane];
             const double bright = part * static_cast<double>(luminance(free));
             colors += free * static_cast<float>(counted * part);
             share += bright;
@@ -269,6 +330,9 @@ void LinkEvaluator::finish(Link& link, uint32_t number, const Ways& ways) {
         for (float& t : link.transfer) t *= scale;
     }
     link.hidden = static_cast<float>(seen > 0 ? std::sqrt(std::max(1 - seen, 0.0) / seen) : 0);
+    const Seen found = seen_of(number, ways);
+    link.chance = clustered ? 0 : static_cast<float>(mean * found.chance(link.agreed));
+    link.agreed = found.alike ? link.agreed + static_cast<float>(found.looks) : 0;
     // What differs smoothly follows a line mostly; shadows' edges do not. Of what points differ in how much they see,
     // chance explains a part: few rays went to each.
     const auto line = line_of([&](uint32_t r) { return factors[r]; });

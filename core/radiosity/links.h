@@ -17,9 +17,12 @@ struct Link {
     NodeId receiver, source;
     Vec3 tint{1, 1, 1};  // of what passes glass; its luminance is 1
     std::array<float, 9> transfer{};
-    float spread = 0;  // what the irradiance is wrong by over the receiver for a radiosity of 1; with a cluster, the
-                       // most that there may be of it
-    float hidden = 0;  // of the source, against the part that is seen: √((1 − V) / V)
+    float spread = 0;   // what the irradiance is wrong by over the receiver for a radiosity of 1; with a cluster, the
+                        // most that there may be of it
+    float hidden = 0;   // of the source, against the part that is seen: √((1 − V) / V)
+    float chance = 0;   // what the irradiance is wrong by, by chance, for a radiosity of 1
+    float agreed = 0;   // rays that all found the same, those of links above that it is a part of too
+    float allowed = 0;  // of what chance may do to the factor: more rays are traced until it is less
 
     Vec3 factor() const { return tint * transfer[0]; }
 };
@@ -31,7 +34,7 @@ class LinkEvaluator {
   public:
     LinkEvaluator(const Elements& elements, const ElementClusters& clusters, uint32_t seed)
         : elements_(elements), clusters_(clusters), seed_(seed), rays_(elements.snapshot()) {}
-    // Fills in factor and spread. Returns the number of rays.
+    // Fills in all but the ends and what is allowed; `agreed` is that of the link above. Returns the number of rays.
     uint64_t evaluate(std::span<Link> links);
 
   private:
@@ -49,17 +52,32 @@ class LinkEvaluator {
     double factor_at(const Place& place, const Places& sources, NodeId source);
     float greatest_factor(const Link& link) const;
     double unseen_share(const Link& link) const;
+    static constexpr uint32_t kOfLink = kLinkPoints * kLinkPoints, kInGroup = kBatch / kOfLink;
     // Of a group of links, between the parts of their ends: what light would go there, and how much rays found free.
     struct Ways {
-        Places receivers[kBatch / (kLinkPoints * kLinkPoints)], sources[kBatch / (kLinkPoints * kLinkPoints)];
+        Places receivers[kInGroup], sources[kInGroup];
         double factors[kBatch / kLinkPoints] = {};
-        float weights[kBatch] = {};
-        LaneVec3 free;  // the sum
+        bool open[kBatch] = {};  // light may go there
+        // Sums over rays of what light each stands for, and of what of it found its way free.
+        float kernels[kBatch] = {};
+        LaneVec3 free;
         uint32_t looks[kBatch] = {};
     };
-    uint32_t rounds_of(const Link& link) const;
+    // What rays have found of a link: how much of it is seen, and what chance may do to that.
+    struct Seen {
+        double mean = 0, seen = 0, within = 0;  // `within`: of the points' variances by chance
+        uint32_t looks = 0;
+        bool alike = false;                 // all rays found the same
+        double chance(float agreed) const;  // of `seen`
+    };
+    Seen seen_of(uint32_t number, const Ways& ways) const;
+    uint32_t first_rounds(const Link& link) const;
+    uint32_t more_rounds(const Link& link, const Seen& seen) const;
     uint64_t group(std::span<Link> links);
-    uint64_t look(std::span<const Link> links, uint32_t round, Ways& ways);
+    struct Round {
+        uint32_t number, round;  // of the link, and its rounds
+    };
+    uint64_t look(std::span<const Link> links, std::span<const Round> rounds, Ways& ways);
     void finish(Link& link, uint32_t number, const Ways& ways);
 
     const Elements& elements_;
