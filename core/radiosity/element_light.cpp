@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 #include <numbers>
+#include <numeric>
 
 #include "base/parallel.h"
 #include "film/pixel_random.h"
@@ -14,6 +15,8 @@ namespace {
 
 constexpr uint32_t kSide = 4, kPlaces = kSide * kSide;  // of an element
 constexpr double kByChance = 2 * 2.0 / 13;  // of what a line does not explain, what it may by chance, twice the mean
+constexpr double kNoise = 0.05;             // of the lamps' mean light, and of an element's own, what chance may do
+constexpr double kMostPairs = 8;            // of samples of each light, at each place
 
 // One to a thread.
 struct Scratch {
@@ -21,7 +24,8 @@ struct Scratch {
     Coefficients coefficients;
     LightScratch lights;
     ProgramScratch program;
-    LaneVec3 irradiance, again;  // by two samples of each light
+    LaneVec3 irradiance, again;  // sums, by two samples of each light at a time
+    uint32_t pairs = 0;          // of them
     alignas(64) uint32_t keys[kBatch], indices[kBatch];
 };
 
@@ -50,7 +54,6 @@ void set_footprints(const LightingJob& job, uint32_t element, int lane, Points& 
 void add_lamps(const LightingJob& job, Scratch& w, LaneVec3& irradiance) {
     const Snapshot& snapshot = job.elements.snapshot();
     const Illumination& illumination = job.illumination;
-    irradiance.clear();
     for (size_t l = 0; l < snapshot.lights.size() && !*job.cancelled; ++l) {
         const ReadyLight& light = snapshot.lights[l];
         if (light.kind == ReadyLight::Kind::surface) continue;  // its elements shine themselves
@@ -97,8 +100,9 @@ ElementLight mean(const Elements& elements, uint32_t element, int first, const S
             out.reflectance[c] += share * std::clamp(reflectance[c], 0.0f, kGreatestReflectance);
         }
         out.emission += w.coefficients.emission.get(i) * (share * alpha * std::numbers::pi_v<float>);
-        const Vec3 irradiance = (w.irradiance.get(i) + w.again.get(i)) * 0.5f;
-        const float differs = luminance(w.irradiance.get(i) - w.again.get(i)) / 2;
+        const float half = 0.5f / static_cast<float>(w.pairs);
+        const Vec3 irradiance = (w.irradiance.get(i) + w.again.get(i)) * half;
+        const float differs = luminance(w.irradiance.get(i) - w.again.get(i)) * half;
         chance += static_cast<double>(differs * differs * share);
         if (irradiance != Vec3(0, 0, 0) || w.coefficients.emission.get(i) != Vec3(0, 0, 0))
             out.lit = static_cast<uint16_t>(out.lit | 1u << k);
@@ -125,41 +129,70 @@ ElementLight mean(const Elements& elements, uint32_t element, int first, const S
                  explained = places.of(luminance(out.irradiance_x), luminance(out.irradiance_y)),
                  rest = std::max(squares - bright * bright - explained, 0.0);
     out.unevenness = static_cast<float>(std::sqrt(std::max(rest - chance, 0.0)));
+    out.noise = static_cast<float>(std::sqrt(chance * static_cast<double>(share)));
     const auto sure = static_cast<float>(std::max(1 - kByChance * rest / std::max(explained, 1e-300), 0.0));
     out.irradiance_x *= sure;
     out.irradiance_y *= sure;
     return out;
 }
 
-}  // namespace
-
-void light_elements(const LightingJob& job, uint32_t first, std::span<ElementLight> out) {
+// Of the elements [first, first + out.size()) those whose numbers in `out` are given, with so many pairs of samples
+// each.
+void light_some(const LightingJob& job, uint32_t first, std::span<const uint32_t> numbers,
+                std::span<const uint32_t> pairs, std::span<ElementLight> out) {
     constexpr uint32_t kInBatch = kBatch / kPlaces;
-    const size_t batches = (out.size() + kInBatch - 1) / kInBatch;
+    const size_t batches = (numbers.size() + kInBatch - 1) / kInBatch;
     parallel_ranges(batches, 4, [&](size_t begin, size_t end) {
         const auto w = std::make_unique<Scratch>();
         for (size_t b = begin; b < end && !*job.cancelled; ++b) {
-            const size_t from = b * kInBatch, count = std::min<size_t>(kInBatch, out.size() - from);
+            const size_t from = b * kInBatch, count = std::min<size_t>(kInBatch, numbers.size() - from);
+            const auto element_at = [&](size_t k) { return first + numbers[from + k]; };
             std::fill_n(w->points.slot, kBatch, kNoSlot);
             for (uint32_t lane = 0; lane < count * kPlaces; ++lane)
-                put(job, first + static_cast<uint32_t>(from) + lane / kPlaces, lane % kPlaces, static_cast<int>(lane),
-                    *w);
+                put(job, element_at(lane / kPlaces), lane % kPlaces, static_cast<int>(lane), *w);
             locate(job.elements.snapshot(), NormalChoice::flat, w->points);
             for (uint32_t lane = 0; lane < count * kPlaces; ++lane)
-                set_footprints(job, first + static_cast<uint32_t>(from) + lane / kPlaces, static_cast<int>(lane),
-                               w->points);
+                set_footprints(job, element_at(lane / kPlaces), static_cast<int>(lane), w->points);
             evaluate(job.elements.snapshot(), w->points, w->coefficients, w->program);
-            add_lamps(job, *w, w->irradiance);
-            for (uint32_t& index : w->indices) index += kPlaces;
-            if (job.twice)
-                add_lamps(job, *w, w->again);
-            else
-                w->again = w->irradiance;
+            w->irradiance.clear();
+            w->again.clear();
+            const uint32_t most = *std::max_element(&pairs[from], &pairs[from] + count);
+            for (w->pairs = 0; w->pairs < most && !*job.cancelled; ++w->pairs)
+                for (LaneVec3* half : {&w->irradiance, &w->again}) {
+                    if (half == &w->irradiance || job.twice) add_lamps(job, *w, *half);
+                    for (uint32_t& index : w->indices) index += kPlaces;
+                }
+            if (!job.twice) w->again = w->irradiance;
             for (size_t k = 0; k < count; ++k)
-                out[from + k] =
-                    mean(job.elements, first + static_cast<uint32_t>(from + k), static_cast<int>(k * kPlaces), *w);
+                out[numbers[from + k]] = mean(job.elements, element_at(k), static_cast<int>(k * kPlaces), *w);
         }
     });
+}
+
+}  // namespace
+
+void light_elements(const LightingJob& job, uint32_t first, std::span<ElementLight> out) {
+    std::vector<uint32_t> numbers(out.size()), pairs(out.size(), 1);
+    std::iota(numbers.begin(), numbers.end(), 0u);
+    light_some(job, first, numbers, pairs, out);
+    if (!job.twice) return;
+    // Again, with more samples, where chance does too much.
+    double sum = 0, area = 0;
+    for (size_t k = 0; k < out.size(); ++k) {
+        const double a = job.elements[first + static_cast<uint32_t>(k)].exposed_area();
+        sum += a * static_cast<double>(luminance(out[k].irradiance));
+        area += a;
+    }
+    numbers.clear();
+    pairs.clear();
+    for (size_t k = 0; k < out.size() && sum > 0; ++k) {
+        const double most = kNoise * std::max(sum / area, static_cast<double>(luminance(out[k].irradiance))),
+                     times = static_cast<double>(out[k].noise) / most;
+        if (!(times > 1)) continue;
+        numbers.push_back(static_cast<uint32_t>(k));
+        pairs.push_back(static_cast<uint32_t>(std::ceil(std::min(times * times, kMostPairs))));
+    }
+    light_some(job, first, numbers, pairs, out);
 }
 
 }  // namespace trp
