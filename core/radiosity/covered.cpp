@@ -8,6 +8,7 @@ namespace trp {
 namespace {
 
 constexpr uint32_t kRounds = 4;  // rays from a place, as long as they meet nothing that takes part
+constexpr uint32_t kTurns = 2;   // that mirrors and glass hand a ray on
 
 // The places of `left`, a bit to each, that a ray from each shows to be open.
 uint16_t open_places(const Elements& elements, const LightingJob& job, uint32_t element, uint32_t round, uint16_t left,
@@ -37,7 +38,7 @@ uint16_t open_places(const Elements& elements, const LightingJob& job, uint32_t 
 void find_covered(Elements& elements, const LightingJob& job, uint32_t first) {
     std::vector<uint16_t> covered(elements.size() - first);
     parallel_ranges(covered.size(), 64, [&](size_t begin, size_t end) {
-        ElementTracer tracer(elements);
+        ElementTracer tracer(elements, kTurns);
         std::vector<ElementRay> rays;
         std::vector<ElementHit> hits;
         for (size_t k = begin; k < end && !*job.cancelled; ++k) {

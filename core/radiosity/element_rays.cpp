@@ -10,11 +10,16 @@
 namespace trp {
 namespace {
 
-constexpr uint32_t kMostTurns = 16;
 constexpr float kLeastWeight = 1e-3f;
 constexpr unsigned kMask = kSeenByCamera | kCastsShadow | kFiltersShadow | kTransmitsShadow;
 
 }  // namespace
+
+bool has_mirrors(const Elements& elements) {
+    const std::vector<uint8_t>& flags = elements.snapshot().material_flags;
+    return std::any_of(elements.facets().begin(), elements.facets().end(),
+                       [&](const Facet& facet) { return (flags[facet.material] & kMirrors) != 0; });
+}
 
 Vec3 cosine_direction(const Vec3& normal, float u, float v) {
     const Vec3 x = perpendicular_to(normal), y = normal.cross(x);
@@ -76,7 +81,7 @@ void ElementTracer::batch(const ElementRay* rays, int count, std::vector<Element
             const int i = first + k;
             points_.slot[i] = kNoSlot;
             if (packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) {
-                hits.push_back({rays[i].id, kNoElement, rays[i].weight, true});
+                hits.push_back({rays[i].id, kNoElement, rays[i].weight, true, rays[i].mirrored});
                 continue;
             }
             const unsigned instance = packet.hit.instID[0][k];
@@ -95,7 +100,7 @@ void ElementTracer::batch(const ElementRay* rays, int count, std::vector<Element
                 continue;
             }
             const auto place = elements_.find(slot, triangle, packet.hit.u[k], packet.hit.v[k], rays[i].direction);
-            hits.push_back({rays[i].id, place.element, rays[i].weight, false,
+            hits.push_back({rays[i].id, place.element, rays[i].weight, false, rays[i].mirrored,
                             rays[i].origin + rays[i].direction * packet.ray.tfar[k]});
         }
     }
@@ -115,25 +120,26 @@ void ElementTracer::go_on(const ElementRay* rays, int count, std::vector<Element
         const ElementRay& ray = rays[i];
         const CompiledMaterial& material = snapshot.materials[points_.material[i]];
         const float alpha = coefficients_.alpha[i];
-        const auto turn = [&](const Vec3& direction, const Vec3& share) {
+        const auto turn = [&](const Vec3& direction, const Vec3& share, bool mirrored) {
             const Vec3 weight = ray.weight * share;
-            if (ray.turns == kMostTurns || greatest(weight) < kLeastWeight) return;
+            if (ray.turns == most_turns_ || greatest(weight) < kLeastWeight) return;
             const Vec3 normal = points_.geometric_normal.get(i);
             const float off = points_.offset[i] * (direction.dot(normal) < 0 ? -1.0f : 1.0f);
-            more.push_back({points_.position.get(i) + normal * off, direction, ray.id, weight, ray.turns + 1});
+            more.push_back({points_.position.get(i) + normal * off, direction, ray.id, weight, ray.turns + 1,
+                            ray.mirrored || mirrored});
         };
         if (alpha > 0) {
             // An element's reflectance holds its alpha.
             const auto place =
                 elements_.find(points_.slot[i], points_.triangle[i], points_.b1[i], points_.b2[i], ray.direction);
-            hits.push_back({ray.id, place.element, ray.weight, false, points_.position.get(i)});
+            hits.push_back({ray.id, place.element, ray.weight, false, ray.mirrored, points_.position.get(i)});
         }
         Vec3 through = Vec3(1, 1, 1) * (1 - alpha);
         if (material.transmits) through += coefficients_.transmission.get(i) * alpha;
-        if (through != Vec3(0, 0, 0)) turn(ray.direction, through);
+        if (through != Vec3(0, 0, 0)) turn(ray.direction, through, false);
         if (!material.mirrors) continue;
         const Vec3 mirror = coefficients_.mirror.get(i) * alpha, n = points_.normal.get(i);
-        if (mirror != Vec3(0, 0, 0)) turn((ray.direction - n * (2 * ray.direction.dot(n))).normalized(), mirror);
+        if (mirror != Vec3(0, 0, 0)) turn((ray.direction - n * (2 * ray.direction.dot(n))).normalized(), mirror, true);
     }
 }
 

@@ -15,7 +15,8 @@ struct ElementRay {
     Vec3 origin, direction;  // unit
     uint32_t id = 0;         // the caller's
     Vec3 weight{1, 1, 1};
-    uint32_t turns = 0;  // surfaces that it has passed
+    uint32_t turns = 0;     // surfaces that it has passed
+    bool mirrored = false;  // by one of them at least
 };
 
 // `element`: kNoElement where the ray left the scene, or met a surface's side that takes no part. A ray may meet
@@ -24,13 +25,19 @@ struct ElementHit {
     uint32_t id, element;
     Vec3 weight;
     bool left = false;       // the scene
+    bool mirrored = false;   // the ray came by a mirror
     Vec3 position{0, 0, 0};  // where it did not
 };
+
+// Whether a surface that is cut into elements mirrors.
+bool has_mirrors(const Elements& elements);
 
 // One to a thread.
 class ElementTracer {
   public:
-    explicit ElementTracer(const Elements& elements) : elements_(elements) {}
+    // `most_turns`: surfaces that a ray may pass.
+    explicit ElementTracer(const Elements& elements, uint32_t most_turns = 16)
+        : elements_(elements), most_turns_(most_turns) {}
     // Appends to `hits`, in an order that depends on the rays alone; returns the number of rays traced. `rays` is used
     // up.
     uint64_t trace(std::vector<ElementRay>& rays, std::vector<ElementHit>& hits);
@@ -40,6 +47,7 @@ class ElementTracer {
     void go_on(const ElementRay* rays, int count, std::vector<ElementRay>& more, std::vector<ElementHit>& hits);
 
     const Elements& elements_;
+    uint32_t most_turns_;
     Points points_;
     Coefficients coefficients_;
     ProgramScratch program_;

@@ -76,6 +76,9 @@ class Elements {
     // Takes back the divisions that made elements from number `size` on.
     void merge(uint32_t size);
 
+    std::span<const Vec3> corners_of(const Facet& facet) const {
+        return {&corners_[facet.first_corner], facet.corner_count};
+    }
     // A point of a facet by its coordinates.
     Vec3 point(const Facet& facet, float s, float t) const;
     // The facet's coordinates of a point of an element that is given by coordinates of its own, as in point_in(); those

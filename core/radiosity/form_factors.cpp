@@ -97,7 +97,8 @@ void analytic_row(const FormFactorJob& job, uint32_t i, uint32_t first, Vec3d* o
     });
 }
 
-void hemisphere_row(const FormFactorJob& job, uint32_t i, uint32_t first, Vec3d* out) {
+// `mirrored`: of what comes by mirrors alone.
+void hemisphere_row(const FormFactorJob& job, uint32_t i, uint32_t first, bool mirrored, Vec3d* out) {
     const Elements& elements = job.elements;
     const uint32_t count = job.settings.rays, chunks = (count + kBatch - 1) / kBatch;
     std::vector<std::vector<ElementHit>> hits(chunks);  // in the order of the rays, whoever traces them
@@ -114,7 +115,7 @@ void hemisphere_row(const FormFactorJob& job, uint32_t i, uint32_t first, Vec3d*
     const double share = 1.0 / count;
     for (const auto& of : hits)
         for (const ElementHit& hit : of)
-            if (hit.element != kNoElement && hit.element >= first)
+            if (hit.element != kNoElement && hit.element >= first && hit.mirrored >= mirrored)
                 out[hit.element - first] += Vec3d(hit.weight) * share;
 }
 
@@ -122,14 +123,11 @@ void hemisphere_row(const FormFactorJob& job, uint32_t i, uint32_t first, Vec3d*
 
 void form_factor_row(const FormFactorJob& job, uint32_t i, uint32_t first, Vec3d* out) {
     std::fill_n(out, job.elements.size() - first, Vec3d(0, 0, 0));
-    switch (job.settings.form_factors) {
-        case FormFactors::analytic:
-            return analytic_row(job, i, first, out);
-        case FormFactors::hemisphere:
-            return hemisphere_row(job, i, first, out);
-        case FormFactors::hemicube:
-            return hemicube_row(job, i, first, out);
-    }
+    const FormFactors kind = job.settings.form_factors;
+    if (kind == FormFactors::analytic) analytic_row(job, i, first, out);
+    if (kind == FormFactors::hemicube) hemicube_row(job, i, first, out);
+    if (kind == FormFactors::hemisphere || has_mirrors(job.elements))
+        hemisphere_row(job, i, first, kind != FormFactors::hemisphere, out);
 }
 
 }  // namespace trp

@@ -6,7 +6,8 @@
 //   hemicube    five faces of a cube about the element's middle, drawn by the rasterizer (Cohen and Greenberg, "The
 //               Hemi-Cube", 1985)
 //
-// What passes glass or comes by a mirror is tinted: a row has three channels.
+// What passes glass or comes by a mirror is tinted: a row has three channels. What mirrors hand on is sampled by rays,
+// whichever kind the rest is.
 #pragma once
 
 #include <atomic>

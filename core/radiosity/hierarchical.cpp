@@ -17,6 +17,7 @@
 #include "radiosity/covered.h"
 #include "radiosity/linear.h"
 #include "radiosity/links.h"
+#include "radiosity/mirror_rows.h"
 #include "radiosity/solver.h"
 
 namespace trp {
@@ -104,6 +105,8 @@ class HierarchicalSolver : public Solver {
     std::vector<NodeId> tops_;        // of the hierarchy
     std::vector<Link> links_;         // by receiver
     std::vector<size_t> first_link_;  // by place of the receiver, and the end
+    MirrorRows mirrors_;
+    std::vector<Vec3d> mirrored_;  // irradiance by mirrors, by element
     float least_area_ = 0;
     size_t most_ = kMost;
     bool begun_ = false;
@@ -155,6 +158,7 @@ bool HierarchicalSolver::begin(const SolverJob& job) {
     std::vector<Link> links = first_links(elements);
     for (Link& link : links) link.allowed = allowed(link);
     evaluate(job, links);
+    mirrors_.add(job.lighting(), 0, job.solution.light);
     if (job.cancelled) return false;
     links_ = std::move(links);
     most_ = std::max(kMost, 4 * size_t{elements.size()});
@@ -193,8 +197,14 @@ void HierarchicalSolver::gather() {
     parallel_ranges(cluster_nodes_.size(), 256, [&](size_t begin, size_t end) {
         for (size_t k = begin; k < end; ++k) gather_node(static_cast<NodeId>(k) | kClusterBit);
     });
+    mirrored_.resize(element_nodes_.size());
     parallel_ranges(element_nodes_.size(), 256, [&](size_t begin, size_t end) {
-        for (size_t k = begin; k < end; ++k) gather_node(static_cast<NodeId>(k));
+        for (size_t k = begin; k < end; ++k) {
+            gather_node(static_cast<NodeId>(k));
+            mirrored_[k] = mirrors_.irradiance(static_cast<uint32_t>(k), [&](uint32_t source) -> const Vec3d& {
+                return element_nodes_[source].radiosity.mean;
+            });
+        }
     });
 }
 
@@ -230,6 +240,7 @@ void HierarchicalSolver::set_leaf(const SolverJob& job, uint32_t leaf, Linear ar
     Solution& solution = job.solution;
     const ElementLight& light = solution.light[leaf];
     Node& n = element_nodes_[leaf];
+    if (leaf < mirrored_.size()) arriving.mean += mirrored_[leaf];
     solution.irradiance[leaf] = arriving.mean;
     arriving += {Vec3d(light.irradiance), Vec3d(light.irradiance_x), Vec3d(light.irradiance_y)};
     // No light falls below 0.
@@ -457,8 +468,10 @@ bool HierarchicalSolver::refine(const SolverJob& job) {
     find_covered(elements, job.lighting(), old_size);
     light_elements(job.lighting(), old_size, std::span(job.solution.light).subspan(old_size));
     evaluate(job, fresh);
+    mirrors_.add(job.lighting(), old_size, job.solution.light);
     if (job.cancelled) {  // as if it had not begun
         elements.merge(old_size);
+        mirrors_.merge(old_size);
         job.solution.light.resize(old_size);
         job.solution.irradiance.resize(old_size);
         return false;

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kLarge = 1e-4;  // of all area: a facet that something else may stand on
 constexpr uint32_t kRays = 4;    // from each place
+constexpr uint32_t kTurns = 2;   // that mirrors and glass hand a ray on
 
 // Disjoint sets (Tarjan 1975), joined in one thread and so the same each time.
 class Regions {
@@ -57,46 +58,70 @@ class Places {
     std::vector<uint32_t> first_;
 };
 
+// One to a thread.
+struct Looker {
+    Looker(const Elements& trial, const Places& of, const LightingJob& lighting)
+        : elements(trial), places(of), job(lighting), tracer(trial, kTurns), ways(trial.snapshot()) {}
+    const Elements& elements;
+    const Places& places;
+    const LightingJob& job;
+    ElementTracer tracer;
+    WayRays ways;
+    std::vector<ElementRay> rays;
+    std::vector<ElementHit> hits;
+
+    // Rays number `first` to `first` + `count` (at most kBatch), kRays to a place, of the sides of all places.
+    void look(size_t first, size_t count, std::span<const uint32_t> side_of, uint32_t* met);
+};
+
+void Looker::look(size_t first, size_t count, std::span<const uint32_t> side_of, uint32_t* met) {
+    alignas(64) uint32_t keys[kBatch], indices[kBatch];
+    alignas(64) Lanes u, v;
+    const auto side = [&](size_t ray) { return side_of[(first + ray) / kRays]; };
+    for (size_t k = 0; k < kBatch; ++k) {
+        const uint32_t element = side(std::min(k, count - 1));
+        keys[k] = element * 0x9E3779B9u;
+        indices[k] = static_cast<uint32_t>(first + k - size_t{places.first(element)} * kRays);
+    }
+    random_pair_of(keys, indices, 0, u, v);
+    rays.clear();
+    hits.clear();
+    for (size_t k = 0; k < count; ++k) {
+        const uint32_t element = side(k);
+        const Vec3 p = places.point(element, indices[k] / kRays), normal = elements.normal(element);
+        rays.push_back({p + normal * clearance(p), cosine_direction(normal, u[k], v[k]), static_cast<uint32_t>(k)});
+    }
+    *job.rays += tracer.trace(rays, hits);
+    std::fill_n(met, count, kNoElement);
+    for (size_t begin = 0; begin < hits.size(); begin += kBatch) {
+        const auto part = std::span(hits).subspan(begin, std::min<size_t>(hits.size() - begin, kBatch));
+        ways.clear();
+        for (size_t h = 0; h < part.size(); ++h) {
+            const ElementHit& hit = part[h];
+            if (hit.element == kNoElement) continue;
+            const uint32_t next = places.nearest(hit.element, hit.position);
+            const Vec3 to = places.point(hit.element, next), other = elements.normal(hit.element);
+            met[hit.id] = places.first(hit.element) + next;
+            ways.set(static_cast<int>(h), elements.facet_of(hit.element).slot, hit.position, other,
+                     to + other * (2 * clearance(to)));
+        }
+        *job.rays += ways.trace();
+        for (size_t h = 0; h < part.size(); ++h)
+            if (part[h].element != kNoElement && ways.free(static_cast<int>(h)) == Vec3(0, 0, 0))
+                met[part[h].id] = kNoElement;
+    }
+}
+
 // The place that each ray of each place shows to be in one region with it: the place next to where it meets a side,
 // where nothing stands between the two; kNoElement: none.
-std::vector<uint32_t> look_around(const Elements& trial, const Places& places, const LightingJob& job) {
+std::vector<uint32_t> look_around(const Elements& trial, const Places& places, std::span<const uint32_t> side_of,
+                                  const LightingJob& job) {
     std::vector<uint32_t> met(size_t{places.size()} * kRays, kNoElement);
-    parallel_ranges(trial.size(), 64, [&](size_t begin, size_t end) {
-        ElementTracer tracer(trial);
-        const auto ways = std::make_unique<WayRays>(trial.snapshot());
-        std::vector<ElementRay> rays;
-        std::vector<ElementHit> hits;
-        alignas(64) uint32_t keys[kBatch], indices[kBatch];
-        alignas(64) Lanes u, v;
-        for (size_t side = begin; side < end && !*job.cancelled; ++side) {
-            const auto element = static_cast<uint32_t>(side);
-            std::fill_n(keys, kBatch, element * 0x9E3779B9u);
-            std::iota(indices, indices + kBatch, 0u);
-            random_pair_of(keys, indices, 0, u, v);
-            const Vec3 normal = trial.normal(element);
-            rays.clear();
-            hits.clear();
-            for (uint32_t k = 0; k < places.count(element) * kRays; ++k) {
-                const Vec3 p = places.point(element, k / kRays);
-                rays.push_back({p + normal * clearance(p), cosine_direction(normal, u[k], v[k]), k});
-            }
-            *job.rays += tracer.trace(rays, hits);
-            // What mirrors and glass hand on comes after the first hits: a batch holds them all, or they are let go.
-            const size_t count = std::min<size_t>(hits.size(), kBatch);
-            ways->clear();
-            for (size_t h = 0; h < count; ++h) {
-                const ElementHit& hit = hits[h];
-                if (hit.element == kNoElement) continue;
-                const uint32_t next = places.nearest(hit.element, hit.position);
-                const Vec3 to = places.point(hit.element, next), other = trial.normal(hit.element);
-                met[size_t{places.first(element)} * kRays + hit.id] = places.first(hit.element) + next;
-                ways->set(static_cast<int>(h), trial.facet_of(hit.element).slot, hit.position, other,
-                          to + other * (2 * clearance(to)));
-            }
-            *job.rays += ways->trace();
-            for (size_t h = 0; h < count; ++h)
-                if (hits[h].element != kNoElement && ways->free(static_cast<int>(h)) == Vec3(0, 0, 0))
-                    met[size_t{places.first(element)} * kRays + hits[h].id] = kNoElement;
+    parallel_ranges((met.size() + kBatch - 1) / kBatch, 4, [&](size_t begin, size_t end) {
+        const auto looker = std::make_unique<Looker>(trial, places, job);
+        for (size_t batch = begin; batch < end && !*job.cancelled; ++batch) {
+            const size_t first = batch * kBatch;
+            looker->look(first, std::min<size_t>(met.size() - first, kBatch), side_of, &met[first]);
         }
     });
     return met;
@@ -113,14 +138,14 @@ void add_sides(Elements& elements, const LightingJob& job) {
     std::vector<ElementLight> light(trial.size());
     light_elements({trial, job.illumination, job.seed, job.cancelled, job.rays, false}, 0, light);
     const Places places(trial);
-    const std::vector<uint32_t> met = look_around(trial, places, job);
+    std::vector<uint32_t> side_of(places.size());
+    for (uint32_t side = 0; side < 2 * count; ++side)
+        std::fill_n(&side_of[places.first(side)], places.count(side), side);
+    const std::vector<uint32_t> met = look_around(trial, places, side_of, job);
 
     const auto exists = [&](uint32_t side) {
         return side % 2 == 0 || snapshot.materials[facets[side / 2].material].double_sided;
     };
-    std::vector<uint32_t> side_of(places.size());
-    for (uint32_t side = 0; side < 2 * count; ++side)
-        std::fill_n(&side_of[places.first(side)], places.count(side), side);
     Regions regions(places.size());
     std::vector<uint8_t> sees(size_t{2} * count, 0), lit(places.size(), 0);
     for (uint32_t place = 0; place < places.size(); ++place)

@@ -114,9 +114,8 @@ TEST(FormFactors, AreTintedByGlass) {
     }
 }
 
-TEST(FormFactors, MirrorsShowTheirImage) {
-    // A square sees itself in a mirror at half a metre, as it would see its twin at one.
-    Scene scene;
+// A square of radiosity 1 at a mirror half a metre above it, which hands on half of all light.
+void make_mirrored_square(Scene& scene) {
     scene.object(quad({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}), wall(scene, 0.5f, 1, false));
     const uint32_t mirror = scene.material([](TrpMaterialDesc& d) {
         d.diffuse = {{0, 0, 0}, TRP_NO_NODE};
@@ -125,9 +124,37 @@ TEST(FormFactors, MirrorsShowTheirImage) {
         d.double_sided = 0;
     });
     scene.object(quad({-9, -9, 0.5f}, {-9, 9, 0.5f}, {9, 9, 0.5f}, {9, -9, 0.5f}), mirror);
-    Solution solution(
-        scene, {{"radiosity.solver", "matrix"}, {"radiosity.form_factors", "hemisphere"}, {"radiosity.rays", "16384"}});
-    EXPECT_NEAR(solution.prepare().row(0)[0], 0.5 * 0.1998248957, 1e-3);
+}
+
+TEST(FormFactors, MirrorsShowTheirImage) {
+    // The square sees itself as it would see its twin at one metre.
+    Scene scene;
+    make_mirrored_square(scene);
+    for (const char* kind : {"hemisphere", "analytic", "hemicube"}) {
+        Solution solution(
+            scene, {{"radiosity.solver", "matrix"}, {"radiosity.form_factors", kind}, {"radiosity.rays", "16384"}});
+        EXPECT_NEAR(solution.prepare().row(0)[0], 0.5 * 0.1998248957, 1e-3) << kind;
+    }
+}
+
+TEST(Radiosity, MirrorsHandLightOn) {
+    // B = E + ρ F B / 2 with the mean F of the square and its twin, by every solver.
+    Scene scene;
+    make_mirrored_square(scene);
+    const double known = 1 / (1 - 0.5 * 0.5 * 0.1998248957);
+    for (const char* solver : {"hierarchical", "matrix", "progressive"}) {
+        Solution solution(scene, {{"radiosity.solver", solver},
+                                  {"radiosity.form_factors", "analytic"},
+                                  {"radiosity.rays", "16384"},
+                                  {"radiosity.tolerance", "0.001"}});
+        solution.solve();
+        const std::vector<double> b = solution.red("radiosity");
+        const std::vector<float> area = solution.read("area", 1), face = solution.read("instance", 1);
+        double sum = 0, total = 0;
+        for (size_t k = 0; k < b.size(); ++k)
+            if (face[k] == face[0]) sum += b[k] * area[k], total += area[k];
+        EXPECT_NEAR(sum / total, known, 3e-3) << solver;
+    }
 }
 
 // ----------------------------------------------------------------------------------------------------------- solutions
