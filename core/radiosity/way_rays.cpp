@@ -13,14 +13,16 @@ void WayRays::clear() {
 }
 
 void WayRays::set(int lane, uint32_t slot, const Vec3& from, const Vec3& normal, const Vec3& to) {
-    const Vec3 way = to - from;
+    // Rays start off the surface: aimed from there, or what lies close before the surface would seem to hide itself.
+    const float offset = clearance(from);
+    const Vec3 way = to - (from + normal * offset);
     const float distance = way.length();
     if (!(distance > 0)) return;
     points_.slot[lane] = slot;
     points_.position.set(lane, from);
     points_.normal.set(lane, normal);
     points_.geometric_normal.set(lane, normal);
-    points_.offset[lane] = clearance(from);
+    points_.offset[lane] = offset;
     points_.time[lane] = 0;
     samples_.direction.set(lane, way / distance);
     samples_.distance[lane] = distance;

@@ -1,33 +1,8 @@
 // Radiosity against closed forms: what form factors, the equation's solution and its parts must be.
-#include "support/radiosity.h"
-#include "support/bodies.h"
+#include "support/radiosity_scenes.h"
 
 namespace trp_test {
 namespace {
-
-constexpr float kPiF = std::numbers::pi_v<float>;
-
-// Reflects, and emits a radiosity.
-uint32_t wall(Scene& scene, float reflectance, float radiosity = 0, bool double_sided = true) {
-    return scene.material([&](TrpMaterialDesc& d) {
-        d.diffuse = {{reflectance, reflectance, reflectance}, TRP_NO_NODE};
-        const float radiance = radiosity / kPiF;
-        d.emission = {{radiance, radiance, radiance}, TRP_NO_NODE};
-        d.double_sided = double_sided;
-    });
-}
-
-// The unit cube with its faces inwards; the first, at z = 0, of a material of its own.
-void add_cube(Scene& scene, uint32_t first, uint32_t others) {
-    MeshData cube = inwards(box({0, 0, 0}, {1, 1, 1}));
-    cube.materials = {first, others};
-    cube.face_materials = {0, 1, 1, 1, 1, 1};
-    scene.object(cube);
-}
-
-Solution::Settings by(const std::string& solver, const std::string& form_factors = "analytic") {
-    return {{"radiosity.solver", solver}, {"radiosity.form_factors", form_factors}};
-}
 
 // -------------------------------------------------------------------------------------------------------- form factors
 
