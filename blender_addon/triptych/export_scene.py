@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A depsgraph to data.Scene: what renders, each mesh and material once, instances sharing them."""
 
-from . import data, settings
+from . import data, properties, settings
 from .export_camera import export_camera
 from .export_light import export_light
 from .export_material import export_material
@@ -31,6 +31,7 @@ def film_size(render):
     return max(render.resolution_x * percent // 100, 1), max(render.resolution_y * percent // 100, 1)
 
 
+_LAMPS_ALONE = "light groups are of lamps; what else gives light is in none"
 _CAMERA = "camera"  # its key among the places of what is shown
 
 
@@ -45,9 +46,7 @@ class _Exporter:
         self.places = {}  # as Motion takes them
         self.bending = {}
         self.camera = None
-        self.groups = {"": 0}
-        for number, group in enumerate(getattr(depsgraph.view_layer, "lightgroups", ()), 1):
-            self.groups[group.name] = number
+        self.groups = properties.light_groups(depsgraph.view_layer)
 
     def run(self, require_camera):
         source, result = self.depsgraph.scene, self.scene
@@ -59,13 +58,21 @@ class _Exporter:
             if shown.type == "MESH":
                 self._instance(key, instance, shown)
             elif shown.type == "LIGHT":
-                group = self.groups.get(getattr(shown, "lightgroup", ""), 0)
+                group = self.groups.get(shown.lightgroup, 0)
                 light = export_light(shown, instance.matrix_world.copy(), self.textures, result.warn, group)
                 result.lights.append(light)
                 self.places[key] = light, "world_from_light"
             elif shown.type in {"VOLUME", "CURVES", "POINTCLOUD", "GPENCIL", "GREASEPENCIL"}:
                 result.warn(f"object '{shown.name}': {shown.type.lower()} objects are not supported; it is left out")
+        self._warn_of_groups(source.world)
         return result
+
+    def _warn_of_groups(self, world):
+        if world is not None and world.lightgroup in self.groups and any(self.scene.world.radiance):
+            self.scene.warn(f"world '{world.name}': {_LAMPS_ALONE}")
+        for name, number in self.groups.items():
+            if number > properties.LIGHT_GROUPS:
+                self.scene.warn(f"light group '{name}' has no pass: there are {properties.LIGHT_GROUPS}")
 
     def _shown(self):
         """What the depsgraph shows: (a key that is the same at every time, instance, evaluated object)."""
@@ -126,6 +133,10 @@ class _Exporter:
         )
         if any(own):
             result.materials = [self._material(material) for material in own]
+        if shown.lightgroup in self.groups:
+            shown_materials = [*self.scene.meshes[mesh].materials, *result.materials]
+            if any(k != data.NONE and any(self.scene.materials[k].emission.value) for k in shown_materials):
+                self.scene.warn(f"object '{shown.name}': {_LAMPS_ALONE}")
         self.scene.instances.append(result)
         self.places[key] = result, "world_from_object"
         if may_bend(shown):

@@ -169,11 +169,43 @@ class TRIPTYCH_VIEWLAYER_PT_passes(_Panel, bpy.types.Panel):
         for row in properties.PASSES:
             if row.name == "Combined" or not row.used_by(context.scene.triptych.method):
                 continue
+            if properties.light_group(row.name):  # those have a panel
+                continue
             switch = properties.blender_pass(row.name)[1]
             if switch:
                 column.prop(view_layer, switch, text=row.name)
             else:
                 column.prop(view_layer.triptych, properties.pass_switch(row.name), text=row.name)
+
+
+class TRIPTYCH_VIEWLAYER_PT_light_groups(_Panel, bpy.types.Panel):
+    bl_label = "Light Groups"
+    bl_context = "view_layer"
+    bl_parent_id = "TRIPTYCH_VIEWLAYER_PT_passes"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        return context.engine == ENGINE and any(
+            properties.light_group(row.name) and row.used_by(context.scene.triptych.method) for row in properties.PASSES
+        )
+
+    def draw(self, context):
+        view_layer = context.view_layer
+        row = self.layout.row()
+        row.template_list(
+            "UI_UL_list",
+            "triptych_light_groups",
+            view_layer,
+            "lightgroups",
+            view_layer,
+            "active_lightgroup_index",
+            rows=3,
+        )
+        column = row.column(align=True)
+        column.operator("scene.view_layer_add_lightgroup", icon="ADD", text="")
+        column.operator("scene.view_layer_remove_lightgroup", icon="REMOVE", text="")
+        column.operator("scene.view_layer_add_used_lightgroups", icon="PRESET_NEW", text="")
 
 
 class TRIPTYCH_MATERIAL_PT_coefficients(_Panel, bpy.types.Panel):
@@ -248,6 +280,8 @@ class TRIPTYCH_LIGHT_PT_light(_Panel, bpy.types.Panel):
             layout.prop(light.triptych, "falloff")
         layout.prop(light, "use_shadow")
         layout.prop(light, "use_nodes")
+        if context.object is not None and context.object.data == light:
+            layout.prop_search(context.object, "lightgroup", context.view_layer, "lightgroups", text="Light Group")
 
 
 _CLASSES = (
@@ -255,6 +289,7 @@ _CLASSES = (
     TRIPTYCH_RENDER_PT_motion_blur,
     TRIPTYCH_RENDER_PT_compare,
     TRIPTYCH_VIEWLAYER_PT_passes,
+    TRIPTYCH_VIEWLAYER_PT_light_groups,
     TRIPTYCH_MATERIAL_PT_coefficients,
     TRIPTYCH_LIGHT_PT_light,
 )

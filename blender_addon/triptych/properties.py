@@ -57,11 +57,35 @@ def pass_switch(name):
     return "use_pass_" + "".join(letter.lower() if letter.isalnum() else "_" for letter in name)
 
 
+LIGHT_GROUPS = 8  # that have a pass, as triptych.h says
+_LIGHT_GROUP = "LightGroup"  # the library's name of it, before the number
+
+
+def light_group(name):
+    """The number, from 1, of the light group that a pass of the library shows; 0: it shows none."""
+    number = name[len(_LIGHT_GROUP) :]
+    return int(number) if name.startswith(_LIGHT_GROUP) and number.isdigit() else 0
+
+
+def light_groups(view_layer):
+    """{name: number in the library} of a view layer's light groups. Those beyond the library's last have no pass."""
+    return {group.name: number for number, group in enumerate(view_layer.lightgroups, 1)}
+
+
 def wanted_passes(view_layer, method):
-    """[(core.Pass, Blender's name)] of the passes that a view layer asks for and the method gives; without Combined."""
+    """[(core.Pass, Blender's name)] of the passes that a view layer asks for and the method gives; without Combined.
+
+    A light group has a pass, named as Cycles does, because it is there.
+    """
+    groups = {number: name for name, number in light_groups(view_layer).items()}
     result = []
     for row in PASSES:
         if row.name == "Combined" or not row.used_by(method):
+            continue
+        group = light_group(row.name)
+        if group:
+            if group in groups:
+                result.append((row, f"Combined_{groups[group]}"))
             continue
         name, switch = blender_pass(row.name)
         owner = view_layer if switch else getattr(view_layer, "triptych", None)
@@ -175,7 +199,7 @@ def _view_layer_group():
     annotations = {
         pass_switch(row.name): BoolProperty(name=row.name, description=row.description.rstrip("."))
         for row in PASSES
-        if row.name != "Combined" and blender_pass(row.name)[1] is None
+        if row.name != "Combined" and not light_group(row.name) and blender_pass(row.name)[1] is None
     }
     return type("TriptychViewLayerSettings", (bpy.types.PropertyGroup,), {"__annotations__": annotations})
 

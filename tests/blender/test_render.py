@@ -10,6 +10,7 @@ import pytest
 import stage
 from triptych import core, engine, properties
 from triptych.as_rendered import export_as_rendered
+from triptych.export_scene import export_scene
 
 pytestmark = pytest.mark.library
 
@@ -90,7 +91,7 @@ def test_passes_arrive(scene):
     layer = scene.view_layers[0]
     names = {}
     for row in core.passes():
-        if row.name == "Combined" or not row.used_by("ray_casting"):
+        if row.name == "Combined" or properties.light_group(row.name) or not row.used_by("ray_casting"):
             continue
         name, switch = properties.blender_pass(row.name)
         setattr(layer if switch else layer.triptych, switch or properties.pass_switch(row.name), True)
@@ -115,6 +116,73 @@ def test_only_asked_passes(scene):
     lit_plane(scene)
     channels = stage.render(scene, multilayer=True)
     assert {name.split(".")[1] for name in channels} <= {"Combined", "Depth"}  # Blender asks for Z by itself
+
+
+def in_groups(scene, *names):
+    layer = scene.view_layers[0]
+    for name in names:
+        layer.lightgroups.add(name=name)
+    return layer
+
+
+def test_light_groups_are_passes(scene):
+    """Each group of the view layer is a pass with its name, as Cycles calls it: the picture of its lamps alone."""
+    plane = stage.plane(scene)
+    stage.material(plane, Color=(0.5, 0.5, 0.5))
+    stage.camera(scene, (0, 0, 4))
+    layer = in_groups(scene, "Empty", "Key light", "Fill")
+    lamps = {
+        "Key light": stage.light(scene, "POINT", (1, 0, 2), 100, color=(1, 0.5, 0.2)),
+        "Fill": stage.light(scene, "SUN", (0, 0, 3), 1),
+        "": stage.light(scene, "POINT", (-1, 1, 1), 30),
+    }
+    for name, lamp in lamps.items():
+        lamp.lightgroup = name
+
+    def picture(channels, name):
+        return np.stack([channels[f"{layer.name}.{name}.{letter}"] for letter in "RGB"], axis=2)
+
+    channels = stage.render(scene, multilayer=True)
+    assert stage.status() == ""
+    parts = {name: picture(channels, f"Combined_{name}") for name in ("Empty", "Key light", "Fill")}
+    assert not any("LightGroup" in name for name in channels)
+    assert not parts["Empty"].any()
+    for name in ("Key light", "Fill"):
+        for other, lamp in lamps.items():
+            lamp.hide_render = other != name
+        alone = picture(stage.render(scene, multilayer=True), "Combined")
+        assert alone.mean() > 0.01 and parts[name] == pytest.approx(alone, rel=1e-5, abs=1e-6)
+    # The same name may be another group of another view layer.
+    second = scene.view_layers.new("Second")
+    second.lightgroups.add(name="Fill")
+    for lamp in lamps.values():
+        lamp.hide_render = False
+    channels = stage.render(scene, multilayer=True)
+    assert picture(channels, "Combined_Fill") == pytest.approx(parts["Fill"], rel=1e-5, abs=1e-6)
+    assert np.array_equal(channels["Second.Combined_Fill.G"], channels[f"{layer.name}.Combined_Fill.G"])
+    assert "Second.Combined_Empty.R" not in channels
+
+
+def test_light_groups_where_there_are_none(scene):
+    """The rasterizer gives no such passes; what else gives light is in no group; and there are eight."""
+    plane = lit_plane(scene)
+    layer = in_groups(scene, *(f"G{k}" for k in range(9)))
+    scene.triptych.method = "flat"
+    channels = stage.render(scene, multilayer=True)
+    assert stage.status() == "" and not any("Combined_" in name for name in channels)
+    scene.triptych.method = "ray_casting"
+    channels = stage.render(scene, multilayer=True)
+    assert stage.status() == ""
+    assert sorted({name.split(".")[1] for name in channels if "Combined_" in name}) == [
+        f"Combined_G{k}" for k in range(8)
+    ]
+    plane.lightgroup = scene.world.lightgroup = "G0"
+    stage.world_color(scene, (1, 1, 1))
+    stage.material(plane, "ShaderNodeEmission", name="Glow")
+    layer.update()
+    lines = export_scene(bpy.context.evaluated_depsgraph_get()).warnings
+    for start in ("object 'Plane': light groups", "world 'World': light groups", "light group 'G8' has no pass"):
+        assert any(line.startswith(start) for line in lines), lines
 
 
 def test_view_layers(scene):
