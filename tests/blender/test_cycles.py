@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Brightness against Cycles. The mean over lit pixels within 1 %.
 
-One diffuse plane under one light without bounces, and then path tracing: diffuse walls, mirrors and glass.
+One diffuse plane under one light without bounces; then path tracing: diffuse walls, mirrors and glass; and ray tracing
+of mirrors and glass alone.
 """
 
 from math import pi
@@ -254,6 +255,24 @@ def test_paths(scene, shader):
     every_bounce(scene)
     values = {} if shader == "ShaderNodeBsdfDiffuse" else {"Roughness": 0.0}
     stage.material(ball(scene, (0.3, 0, 1.0)), shader, Color=(0.9, 0.8, 0.7), **values)
+    stage.camera(scene, (0, -5, 4), (0, 0, 0.7))
+    compare(scene)
+
+
+@pytest.mark.parametrize("shaders", [["Glass"], ["Glossy"], ["Glass", "Glossy"]])
+def test_trees(scene, shaders):
+    """Glass and mirror balls on the plane, under a sky and an area light that they show. Surfaces do not light each
+    other, in Cycles by a limit."""
+    every_bounce(scene)
+    scene.cycles.diffuse_bounces = 0
+    scene.triptych.method = "ray_tracing"
+    for name in ("trace_depth", "trace_reflection_depth", "trace_transmission_depth"):
+        setattr(scene.triptych, name, 24)
+    for name, location in zip(shaders, [(0.3, 0, 1.0), (-1.6, 0.8, 0.8)], strict=False):
+        made = ball(scene, location, location[2])
+        stage.material(made, f"ShaderNodeBsdf{name}", name=name, Color=(0.9, 0.8, 0.7), Roughness=0.0)
+    lamp = stage.light(scene, "AREA", (1.5, -1, 4), 200, (20, 20, 0), shape="SQUARE", size=1.5)
+    lamp.visible_camera = False
     stage.camera(scene, (0, -5, 4), (0, 0, 0.7))
     compare(scene)
 
