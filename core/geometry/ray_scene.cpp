@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <numeric>
 #include <unordered_map>
 
 #include "base/clock.h"
@@ -116,11 +117,17 @@ class PlacedGeometry {
     EmbreeGeometry geometry;
 
   private:
-    // As many steps as the mesh or the placement has; what has fewer is linear between them.
+    // Steps among which are those of the mesh and those of the placement, if Embree takes so many; else those of the
+    // one that has more. What has none at a step is linear there.
+    static uint32_t common_steps(uint32_t a, uint32_t b) {
+        if (a == 1 || b == 1) return std::max(a, b);
+        const uint32_t common = std::lcm(a - 1, b - 1) + 1;
+        return common <= RTC_MAX_TIME_STEP_COUNT ? common : std::max(a, b);
+    }
     void move_to_world() {
         const Mesh& mesh = placement.surface->mesh();
         const size_t vertices = mesh.vertex_count;
-        steps = std::max(steps, static_cast<uint32_t>(placement.world_from_object.size()));
+        steps = common_steps(steps, static_cast<uint32_t>(placement.world_from_object.size()));
         moved.reserve(steps * vertices + 1);  // Embree may read 4 bytes past the end
         moved.resize(steps * vertices);
         for (uint32_t step = 0; step < steps; ++step) {

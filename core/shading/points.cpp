@@ -78,13 +78,26 @@ Vector3<V> turn_normal(D d, const PlacedSurface& surface, const Vector3<V>& n) {
            broadcast(d, x.cross(y) * sign) * n.z;
 }
 
-// As turn_normal(), where the surface moves.
+template <class V>
+Vector3<V> column(const AffineLanes<V>& m, int k) {
+    return {m.rows[0][k], m.rows[1][k], m.rows[2][k]};
+}
+
+// As turn_normal(), where the surface moves; `sign` as normal_sign_at() gives it.
 template <class D, class V>
-Vector3<V> turn_normal_at(D d, const PlacedSurface& surface, V time, const Vector3<V>& n) {
+Vector3<V> turn_normal_at(D d, const PlacedSurface& surface, V time, V sign, const Vector3<V>& n) {
     const AffineLanes<V> m = transform_at(d, surface, time);
-    const auto column = [&](int k) { return Vector3<V>{m.rows[0][k], m.rows[1][k], m.rows[2][k]}; };
-    const Vector3<V> x = column(0), y = column(1), z = column(2);
-    return (cross3(y, z) * n.x + cross3(z, x) * n.y + cross3(x, y) * n.z) * hn::Set(d, surface.normal_sign);
+    const Vector3<V> x = column(m, 0), y = column(m, 1), z = column(m, 2);
+    return (cross3(y, z) * n.x + cross3(z, x) * n.y + cross3(x, y) * n.z) * sign;
+}
+
+// −1 where the transform mirrors: one that moves may do so part of the time.
+template <class D, class V>
+V normal_sign_at(D d, const PlacedSurface& surface, V time) {
+    if (surface.motion.empty()) return hn::Set(d, surface.normal_sign);
+    const AffineLanes<V> m = transform_at(d, surface, time);
+    const V determinant = dot3(column(m, 0), cross3(column(m, 1), column(m, 2)));
+    return hn::IfThenElse(hn::Lt(determinant, hn::Zero(d)), hn::Set(d, -1.0f), hn::Set(d, 1.0f));
 }
 
 // A vertex at the lanes' times, as positions have it.
@@ -190,10 +203,12 @@ void locate_lanes(const Snapshot& snapshot, NormalChoice choice, Side seen_side,
                 n2 = select3(lanes_of, normal_of(2), n2);
             });
             // Where a mesh bends, its normals, which are of the first time sample, follow the faces.
+            const V sign = normal_sign_at(d, surface, time);
             Vector3<V> bend = none;
             if (bends)
-                bend = unit(d, cross3(c.p1 - c.p0, c.p2 - c.p0), one) -
-                       unit(d, cross3(rest.p1 - rest.p0, rest.p2 - rest.p0), one);
+                bend = unit(d, cross3(c.p1 - c.p0, c.p2 - c.p0), surface.baked ? sign : one) -
+                       unit(d, cross3(rest.p1 - rest.p0, rest.p2 - rest.p0),
+                            surface.baked ? hn::Set(d, surface.normal_sign) : one);
             place_corners(d, surface, time, c);
             const Vector3<V> e1 = c.p1 - c.p0, e2 = c.p2 - c.p0;
             if (from) {
@@ -206,7 +221,7 @@ void locate_lanes(const Snapshot& snapshot, NormalChoice choice, Side seen_side,
             edge1 = select3(mask, e1, edge1);
             edge2 = select3(mask, e2, edge2);
             greatest = hn::IfThenElse(mask, c.greatest, greatest);
-            const Vector3<V> plane = cross3(e1, e2) * hn::Set(d, surface.normal_sign);
+            const Vector3<V> plane = cross3(e1, e2) * sign;
             geometric = select3(mask, plane, geometric);
 
             Vector3<V> shading = plane;
@@ -215,8 +230,8 @@ void locate_lanes(const Snapshot& snapshot, NormalChoice choice, Side seen_side,
                 if (bends && !surface.baked) n = unit(d, n, one) + bend;
                 if (!surface.identity)
                     n = surface.motion.empty() || (bends && surface.baked) ? turn_normal(d, surface, n)
-                                                                           : turn_normal_at(d, surface, time, n);
-                if (bends && surface.baked) n = unit(d, n, one) + bend * hn::Set(d, surface.normal_sign);
+                                                                           : turn_normal_at(d, surface, time, sign, n);
+                if (bends && surface.baked) n = unit(d, n, one) + bend;
                 shading = select3(smooth, n, plane);
             }
             normal = select3(mask, shading, normal);

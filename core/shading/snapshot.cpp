@@ -183,6 +183,33 @@ bool moves(const Scene& scene, const Snapshot& snapshot) {
            });
 }
 
+// What is not shown as it moves.
+void warn_of_motion(const Scene& scene, Snapshot& snapshot) {
+    for (const auto& [id, light] : scene.lights) {
+        const std::vector<Affine>& motion = light->world_from_light;
+        const auto grows = [&](const Affine& m, int axis) {
+            const float first = motion[0].column(axis).length();
+            return std::abs(m.column(axis).length() - first) > 1e-3f * first;
+        };
+        if (light->type == TRP_LIGHT_AREA &&
+            std::any_of(motion.begin(), motion.end(), [&](const Affine& m) { return grows(m, 0) || grows(m, 1); }))
+            warn(snapshot, TRP_WARNING_LIGHT, id,
+                 fmt::format("{} changes its size while the shutter is open, and keeps the first",
+                             item_name("light", id, light->name)));
+    }
+    for (const PlacedSurface& placed : snapshot.surfaces) {
+        if (!placed.mesh || !placed.baked || placed.motion.empty()) continue;
+        const size_t last = placed.position_steps - 1;
+        if (last % (placed.motion.size() - 1) != 0 ||
+            (placed.mesh->time_count > 1 && last % (placed.mesh->time_count - 1) != 0))
+            warn(snapshot, TRP_WARNING_MESH, placed.instance,
+                 fmt::format(
+                     "{} has {} time samples and its mesh {}, which have no common ones: its motion is that of {}",
+                     item_name("instance", placed.instance, scene.instances.find(placed.instance)->name),
+                     placed.motion.size(), placed.mesh->time_count, placed.position_steps));
+    }
+}
+
 // `world_positions`: the vertices where they were moved to world space, else null; of so many time steps.
 PlacedSurface place(const Placement& placement, const Vec3* world_positions, uint32_t position_steps,
                     const Instance& instance, std::vector<uint32_t> slot_materials) {
@@ -326,6 +353,7 @@ std::shared_ptr<const Snapshot> make_snapshot(const Scene& scene, std::shared_pt
             place(*snapshot->rays->placement(slot), snapshot->rays->world_positions(slot),
                   snapshot->rays->position_steps(slot), *scene.instances.find(id), std::move(slots_of[id]));
     }
+    warn_of_motion(scene, *snapshot);
     snapshot->lights = make_lights(*snapshot);
     fill_info(scene, *snapshot);
     snapshot->info.commit_seconds = seconds_since(start);

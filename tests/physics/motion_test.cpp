@@ -276,5 +276,130 @@ TEST(Motion, AClosedShutterSeesOneTime) {
     EXPECT_LE(differ, 12u) << "where a ray meets an edge";
 }
 
+size_t different(const Image& a, const Image& b) {
+    size_t count = 0;
+    for (size_t i = 0; i < a.values.size(); ++i) count += std::abs(a.values[i] - b.values[i]) > 1e-3;
+    return count;
+}
+
+// The samples of a mesh and those of its instance need not be at the same times.
+TEST(Motion, SamplesOfMeshAndInstanceAreAllMet) {
+    const auto picture = [](float time, bool moves) {
+        // Along x by its mesh, of three samples, and along y by its instance, of four.
+        const auto along = [&](std::vector<float> samples) {
+            const float at = time * static_cast<float>(samples.size() - 1);
+            const auto before = static_cast<size_t>(at);
+            return samples[before] + (at - static_cast<float>(before)) * (samples[before + 1] - samples[before]);
+        };
+        const std::vector<float> x = {-1, 1, -1}, y = {0, 0.5f, -0.5f, 0};
+        Scene scene;
+        MeshData square = floor_square(0.5f);
+        square.materials = {glowing(scene, 1)};
+        if (moves) {
+            const std::vector<float> first = square.positions;
+            square.positions.clear();
+            for (const float step : x)
+                for (size_t i = 0; i < first.size(); ++i) square.positions.push_back(first[i] + (i % 3 ? 0 : step));
+            std::vector<Transform> places;
+            for (const float step : y) places.push_back(translation({0, step, 0}));
+            moving(scene, scene.mesh(square, [](TrpMeshDesc& d) { d.time_count = 3; }), places);
+        } else {
+            scene.instance(scene.mesh(square), translation({along(x), along(y), 0}));
+        }
+        scene.camera(translation({0, 0, 10}), [&](TrpCameraDesc& d) {
+            d.type = TRP_CAMERA_ORTHOGRAPHIC;
+            d.width = 4;
+            d.shutter[0] = d.shutter[1] = time;
+        });
+        return blurred(scene, "ray_casting", {{"samples", "4"}}, 40, 40);
+    };
+    for (const float time : {0.2f, 0.37f, 0.5f, 0.75f})
+        EXPECT_LE(different(picture(time, true), picture(time, false)), 12u) << time << ": at edges, to rounding";
+}
+
+// A transform may come to mirror while the shutter is open: what is outside stays outside.
+TEST(Motion, MirroringTurnsNothingInsideOut) {
+    const auto picture = [](float share, bool moves, const char* method) {
+        Scene scene;
+        const auto scaled = [](float x) { return Transform{x, 0, 0, 0.3f, 0, 1, 0, 0, 0, 0, 1, 0}; };
+        const auto add = [&](MeshData mesh, uint32_t material) {
+            mesh.materials = {material};
+            if (moves)
+                moving(scene, scene.mesh(mesh), {scaled(1), scaled(-1)});
+            else
+                scene.instance(scene.mesh(mesh), scaled(1 - 2 * share));
+        };
+        add(sphere({0.8f, 0, 0}, 0.6f, 24), scene.material([](TrpMaterialDesc& d) {
+            d.diffuse = {{0.8f, 0.3f, 0.2f}, TRP_NO_NODE};
+            d.double_sided = 0;
+        }));
+        add(box({-1.5f, -0.5f, -0.5f}, {-0.7f, 0.5f, 0.5f}),
+            glass(scene, 1.5f, [](TrpMaterialDesc& d) { d.absorption[0] = 1; }));
+        scene.light(TRP_LIGHT_SUN, {3, 3, 3}, look_at({-1, -2, 2}, {0, 0, 0}));
+        scene.world({0.5f, 0.5f, 0.5f});
+        scene.camera(look_at({0.3f, -5, 1}, {0, 0, 0}), [&](TrpCameraDesc& d) { d.shutter[0] = d.shutter[1] = share; });
+        return blurred(scene, method, {{"samples", "4"}}, 40, 40);
+    };
+    for (const char* method : {"ray_casting", "ray_tracing"})
+        for (const float share : {0.1f, 0.9f})
+            EXPECT_LE(different(picture(share, true, method), picture(share, false, method)), 40u)
+                << method << " " << share << ": at edges, to rounding";
+}
+
+std::vector<std::string> warnings(Scene& scene) {
+    scene.commit();
+    std::vector<std::string> texts;
+    for (uint32_t k = 0; k < trp_scene_warning_count(scene); ++k) {
+        TrpWarning warning{};
+        warning.struct_size = sizeof warning;
+        check(trp_scene_warning(scene, k, &warning));
+        texts.emplace_back(warning.text);
+    }
+    return texts;
+}
+
+TEST(Motion, WarnsOfWhatIsNotShown) {
+    Scene scene;
+    const auto lamp = [&](const char* name, int32_t type, const std::vector<Transform>& transforms) {
+        const std::vector<float> rows = steps(transforms);
+        scene.light(type, {1, 1, 1}, kIdentity, [&](TrpLightDesc& d) {
+            d.name = name;
+            d.world_from_light = rows.data();
+            d.time_count = static_cast<uint32_t>(transforms.size());
+        });
+    };
+    Transform large = kIdentity;
+    large[5] = 1.5f;
+    lamp("Growing", TRP_LIGHT_AREA, {kIdentity, kIdentity, large});
+    lamp("Turning", TRP_LIGHT_AREA, {look_at({0, 0, 3}, {0, 0, 0}, {0, 1, 0}), look_at({0, 1, 3}, {0, 2, 0})});
+    lamp("Point", TRP_LIGHT_POINT, {kIdentity, large});
+    const auto shown = [&](const char* name, uint32_t of_mesh, uint32_t of_instance) {
+        MeshData square;
+        for (uint32_t step = 0; step < of_mesh; ++step) {
+            const std::vector<float> at = floor_square(1 + 0.1f * static_cast<float>(step)).positions;
+            square.positions.insert(square.positions.end(), at.begin(), at.end());
+        }
+        square.offsets = {0, 4};
+        square.corners = {0, 1, 2, 3};
+        std::vector<Transform> places;
+        for (uint32_t step = 0; step < of_instance; ++step)
+            places.push_back(translation({0, 0, static_cast<float>(step)}));
+        const std::vector<float> rows = steps(places);
+        scene.instance(scene.mesh(square, [&](TrpMeshDesc& d) { d.time_count = of_mesh; }), kIdentity,
+                       [&](TrpInstanceDesc& d) {
+                           d.name = name;
+                           d.world_from_object = rows.data();
+                           d.time_count = of_instance;
+                       });
+    };
+    shown("Together", 3, 5);
+    shown("Apart", 4, 12);
+    shown("Far apart", 128, 129);
+    const std::vector<std::string> texts = warnings(scene);
+    ASSERT_EQ(texts.size(), 2u);
+    EXPECT_NE(texts[0].find("\"Growing\" changes its size"), std::string::npos) << texts[0];
+    EXPECT_NE(texts[1].find("\"Far apart\" has 129 time samples and its mesh 128"), std::string::npos) << texts[1];
+}
+
 }  // namespace
 }  // namespace trp_test

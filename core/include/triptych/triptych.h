@@ -352,7 +352,7 @@ typedef struct TrpLightDesc {
     float angle;                   /* sun: its angular diameter; spot: the full cone angle; area: the spread, π is
                                       all. Default: 0, π/4, π by type; a negative value stands for the default */
     float blend;                   /* spot: the share of the cone in which its edge fades, 0 to 1; default 0.15 */
-    float size[2];                 /* area: full width and height, metres; default 1 */
+    float size[2];                 /* area: full width and height, metres; default 1. Of the scale, the first sample counts */
     int32_t shape;                 /* area: TRP_SHAPE_… */
     int32_t cast_shadow;           /* default 1 */
     int32_t visible_camera;        /* area: seen by primary rays; default 0 */
