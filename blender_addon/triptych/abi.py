@@ -30,6 +30,7 @@ SETTING_TYPES = ("BOOL", "INT", "FLOAT", "COLOR", "ENUM")
 RAY_KINDS = ("primary", "reflection", "transmission")
 RAY_ENDS = ("surface", "light", "background", "depth", "weight")
 NO_PARENT = 0xFFFFFFFF
+NO_ELEMENT = 0xFFFFFFFF
 
 u32, i32, u64, f32, f64, text = c.c_uint32, c.c_int32, c.c_uint64, c.c_float, c.c_double, c.c_char_p
 floats = c.POINTER(f32)
@@ -319,6 +320,30 @@ class Statistics(c.Structure):
     ]
 
 
+class RadiosityInfo(c.Structure):
+    _fields_ = [
+        ("struct_size", u32),
+        *((name, u32) for name in ("element_count", "vertex_count", "corner_count", "iterations")),
+        ("solved", i32),
+        ("links", u64),
+        ("rays", u64),
+        ("residual", f64),
+        ("area", f64),
+        ("power", f64 * 3),
+        ("unshot", f64 * 3),
+        ("seconds", f64),
+    ]
+
+
+class RadiosityLink(c.Structure):
+    _fields_ = [
+        ("struct_size", u32),
+        ("receiver", u32),
+        ("source", u32),
+        *((name, f32 * 3) for name in ("factor", "from", "to")),
+    ]
+
+
 # -------------------------------------------------------------------------------------------------------------- library
 
 _handle, _out = c.c_void_p, c.POINTER(c.c_void_p)
@@ -377,8 +402,17 @@ FUNCTIONS = {
     "render_set_radiosity": (i32, _handle, _handle),
     "radiosity_create": (i32, _handle, c.POINTER(_handle)),
     "radiosity_destroy": (None, _handle),
-    "radiosity_set": (i32, _handle, c.c_char_p, c.c_char_p),
+    "radiosity_set": (i32, _handle, text, text),
+    "radiosity_prepare": (i32, _handle, c.POINTER(Callbacks)),
+    "radiosity_step": (i32, _handle, u32, c.POINTER(Callbacks)),
     "radiosity_solve": (i32, _handle, c.POINTER(Callbacks)),
+    "radiosity_info": (i32, _handle, c.POINTER(RadiosityInfo)),
+    "radiosity_warning_count": (u32, _handle),
+    "radiosity_warning": (i32, _handle, u32, c.POINTER(Warning_)),
+    "radiosity_read": (i32, _handle, text, floats, c.c_size_t),
+    "radiosity_polygons": (i32, _handle, c.POINTER(u32), c.c_size_t, c.POINTER(u32), c.c_size_t),
+    "radiosity_form_factors": (i32, _handle, u32, c.POINTER(f64), c.c_size_t),
+    "radiosity_link": (i32, _handle, u64, c.POINTER(RadiosityLink)),
     "render_statistics": (i32, _handle, c.POINTER(Statistics)),
 }
 

@@ -118,6 +118,15 @@ def _ids(values):
     return (abi.u32 * len(values))(*values)
 
 
+def _warnings(kind, handle):
+    lines = []
+    for index in range(getattr(abi.library(), f"trp_{kind}_warning_count")(handle)):
+        warning = abi.Warning_(struct_size=c.sizeof(abi.Warning_))
+        abi.call(f"{kind}_warning", handle, index, c.byref(warning))
+        lines.append(warning.text.decode(errors="replace"))
+    return lines
+
+
 class Scene:
     """A scene of the core. Use it as a context manager."""
 
@@ -161,12 +170,7 @@ class Scene:
 
     def warnings(self):
         """The lines of the last commit."""
-        lines = []
-        for index in range(abi.library().trp_scene_warning_count(self._handle)):
-            warning = abi.Warning_(struct_size=c.sizeof(abi.Warning_))
-            abi.call("scene_warning", self._handle, index, c.byref(warning))
-            lines.append(warning.text.decode(errors="replace"))
-        return lines
+        return _warnings("scene", self._handle)
 
     def _add(self, kind, desc):
         number = abi.u32()
@@ -289,27 +293,10 @@ def _named(places, ids):
     return [abi.NO_ID if place == data.NONE else ids[place] for place in places]
 
 
-# --------------------------------------------------------------------------------------------------------------- render
+# ------------------------------------------------------------------------------------------------------- calls that run
 
 
-class Ray:
-    """A ray of a pixel's tree, in world space.
-
-    kind (of abi.RAY_KINDS), end (of abi.RAY_ENDS), parent (its place in the list, or data.NONE), origin, direction.
-    Where it ends at a surface: mesh and material (names), instance (an id), position, normal; there and at a light:
-    distance (metres). intensity (W/(m² sr)) is local + Σ weight · intensity of its children.
-    """
-
-    def __init__(self, row):
-        self.kind, self.end = abi.RAY_KINDS[row.kind], abi.RAY_ENDS[row.end]
-        self.parent = data.NONE if row.parent == abi.NO_PARENT else row.parent
-        self.mesh, self.material, self.instance = _words(row.object), _words(row.material), row.instance
-        self.distance = row.distance
-        for name in ("origin", "direction", "position", "normal", "local", "weight", "intensity"):
-            setattr(self, name, tuple(getattr(row, name)))
-
-
-def _run(name, handle, progress=None, tile=None, log=None):
+def _run(name, *arguments, progress=None, tile=None, log=None):
     """A call that takes callbacks; False where it was cancelled. See Render.run."""
     raised = []
 
@@ -332,10 +319,15 @@ def _run(name, handle, progress=None, tile=None, log=None):
         callbacks.tile = abi.TileFunction(guarded(tile, lambda pointer: pointer.contents))
     if log is not None:
         callbacks.log = abi.LogFunction(guarded(log, lambda line: line.decode(errors="replace")))
-    status = abi.call(name, handle, c.byref(callbacks))
+    status = abi.call(name, *arguments, c.byref(callbacks))
     if raised:
         raise raised[0]
     return status != abi.CANCELLED
+
+
+# ------------------------------------------------------------------------------------------------------------ radiosity
+
+_SCALARS = {"area", "instance", "face"}  # values of one number; others have three
 
 
 class Radiosity:
@@ -354,9 +346,84 @@ class Radiosity:
         """A setting, as text; before the first step."""
         abi.call("radiosity_set", self._handle, name.encode(), value.encode())
 
+    def prepare(self, progress=None):
+        """Makes the elements, without a step; see solve()."""
+        return _run("radiosity_prepare", self._handle, progress=progress)
+
+    def step(self, count, progress=None):
+        """Goes on by so many steps, or until it is solved; see solve()."""
+        return _run("radiosity_step", self._handle, count, progress=progress)
+
     def solve(self, progress=None):
         """Goes on until it is solved; False where it was cancelled, which leaves what was done. See Render.run."""
-        return _run("radiosity_solve", self._handle, progress)
+        return _run("radiosity_solve", self._handle, progress=progress)
+
+    def info(self):
+        """abi.RadiosityInfo of what was done so far."""
+        info = abi.RadiosityInfo(struct_size=c.sizeof(abi.RadiosityInfo))
+        abi.call("radiosity_info", self._handle, c.byref(info))
+        return info
+
+    def warnings(self):
+        """The lines of its making."""
+        return _warnings("radiosity", self._handle)
+
+    def read(self, name):
+        """Values of all elements or vertices, as triptych.h names them: n × 3 or n float32."""
+        info = self.info()
+        count = info.vertex_count if name.startswith("vertex_") else info.element_count
+        values = np.empty((count, 3) if name not in _SCALARS else count, np.float32)
+        abi.call("radiosity_read", self._handle, name.encode(), _floats(values), values.size)
+        return values
+
+    def polygons(self):
+        """(elements + 1 offsets, vertices) of the elements' polygons, uint32."""
+        info = self.info()
+        offsets, vertices = np.empty(info.element_count + 1, np.uint32), np.empty(info.corner_count, np.uint32)
+        abi.call(
+            "radiosity_polygons",
+            self._handle,
+            *(offsets.ctypes.data_as(c.POINTER(abi.u32)), offsets.size),
+            *(vertices.ctypes.data_as(c.POINTER(abi.u32)), vertices.size),
+        )
+        return offsets, vertices
+
+    def form_factors(self, element):
+        """The row of an element: n float64."""
+        row = np.empty(self.info().element_count)
+        pointer = row.ctypes.data_as(c.POINTER(abi.f64))
+        abi.call("radiosity_form_factors", self._handle, element, pointer, row.size)
+        return row
+
+    def links(self):
+        """All links, as an array with the fields of TrpRadiosityLink; abi.NO_ELEMENT as there."""
+        links = (abi.RadiosityLink * self.info().links)()
+        function, size = abi.library().trp_radiosity_link, c.sizeof(abi.RadiosityLink)
+        for index, link in enumerate(links):  # as abi.call, which takes twice the time
+            link.struct_size = size
+            if function(self._handle, index, link):
+                abi.call("radiosity_link", self._handle, index, link)
+        return np.frombuffer(links, abi.RadiosityLink) if len(links) else np.empty(0, abi.RadiosityLink)
+
+
+# --------------------------------------------------------------------------------------------------------------- render
+
+
+class Ray:
+    """A ray of a pixel's tree, in world space.
+
+    kind (of abi.RAY_KINDS), end (of abi.RAY_ENDS), parent (its place in the list, or data.NONE), origin, direction.
+    Where it ends at a surface: mesh and material (names), instance (an id), position, normal; there and at a light:
+    distance (metres). intensity (W/(m² sr)) is local + Σ weight · intensity of its children.
+    """
+
+    def __init__(self, row):
+        self.kind, self.end = abi.RAY_KINDS[row.kind], abi.RAY_ENDS[row.end]
+        self.parent = data.NONE if row.parent == abi.NO_PARENT else row.parent
+        self.mesh, self.material, self.instance = _words(row.object), _words(row.material), row.instance
+        self.distance = row.distance
+        for name in ("origin", "direction", "position", "normal", "local", "weight", "intensity"):
+            setattr(self, name, tuple(getattr(row, name)))
 
 
 class Render:
@@ -391,7 +458,7 @@ class Render:
         progress(abi.Progress), tile(abi.Tile) and log(str) are called on this thread; a false answer cancels. What a
         callback raises cancels the render and is raised from here.
         """
-        return _run("render_run", self._handle, progress, tile, log)
+        return _run("render_run", self._handle, progress=progress, tile=tile, log=log)
 
     def show(self, radiosity):
         """Has it show a Radiosity as it is now. Error STATE where that is of another scene, or has not been begun."""

@@ -99,7 +99,8 @@ void read_at_vertices(Radiosity& radiosity, RadiositySettings::View view, float*
     RadiositySettings settings = radiosity.settings.radiosity;
     settings.view = view;
     settings.ambient = false;
-    for (const Vec3& value : radiosity.shown(settings)->at_vertices) {
+    const auto shown = radiosity.shown(settings);
+    for (const Vec3& value : shown->at_vertices) {
         put(Vec3d(value), out);
         out += 3;
     }

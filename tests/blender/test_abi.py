@@ -32,6 +32,8 @@ STRUCTURES = {
     "TrpCallbacks": abi.Callbacks,
     "TrpRay": abi.Ray,
     "TrpStatistics": abi.Statistics,
+    "TrpRadiosityInfo": abi.RadiosityInfo,
+    "TrpRadiosityLink": abi.RadiosityLink,
 }
 _SIZES = {"uint32_t": 4, "int32_t": 4, "uint64_t": 8, "float": 4, "double": 8, "char": 1, "void": 1}
 

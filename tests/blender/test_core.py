@@ -64,3 +64,35 @@ def test_render_read_and_write(tmp_path):
             with pytest.raises(ZeroDivisionError):
                 render.run(lambda one: 1 / 0)
     assert (tmp_path / "out.exr").stat().st_size > 0
+
+
+def test_radiosity_of_a_cube():
+    """A furnace, B = E / (1 - ρ) everywhere, and the form factors of opposite and adjacent faces."""
+    corners = np.float32([(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)])
+    faces = np.uint32([(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)])  # inwards
+    cube = data.Mesh("Cube", corners, np.arange(0, 28, 4, dtype=np.uint32), faces.ravel(), materials=[0])
+    source = data.Scene(meshes=[cube], instances=[data.Instance("Cube", 0, data.IDENTITY)])
+    gray = {"diffuse": data.Coefficient((0.5, 0.5, 0.5)), "emission": data.Coefficient((1.0, 2.0, 3.0))}
+    source.materials.append(data.Material("Glow", **gray))
+    with core.Scene() as scene:
+        scene.fill(source)
+        scene.commit(1)
+        solution = core.Radiosity(scene)
+        assert solution.info().element_count == 0
+        solution.set("radiosity.solver", "matrix")
+        assert solution.prepare() and solution.info().element_count == 6 and solution.info().iterations == 0
+        assert solution.step(1) and solution.info().iterations == 1
+        assert solution.solve() and solution.info().solved
+    expected = np.pi * np.float32([1, 2, 3]) / (1 - 0.5)
+    for name, count in (("radiosity", 6), ("vertex_radiosity", 24)):
+        assert solution.read(name) == pytest.approx(np.tile(expected, (count, 1)), rel=2e-3), name
+    assert solution.read("vertex_irradiance") == pytest.approx(np.tile(expected, (24, 1)), rel=2e-3)
+    assert solution.read("area") == pytest.approx(np.ones(6), rel=1e-6)
+    offsets, vertices = solution.polygons()
+    assert list(offsets) == list(range(0, 28, 4)) and sorted(vertices) == list(range(24))
+    row = solution.form_factors(0)
+    assert row == pytest.approx([0, 0.1998249, 0.2000438, 0.2000438, 0.2000438, 0.2000438], abs=1e-6)
+    assert len(solution.links()) == 0 and solution.warnings() == []
+    with pytest.raises(abi.Error, match="no values"):
+        solution.read("nothing")
+    solution.close()
