@@ -12,6 +12,8 @@ The modules, in the order in which data walks through them:
     engine, properties, panels      Blender's side: what is registered
     shading_sheet, lettering        a sheet that compares flat, Gouraud and Phong shading
     ray_tree, ray_tree_panel        the rays of a pixel as curves and as a list
+    radiosity, radiosity_play, radiosity_panel      the solution that is kept from render to render, and step by step
+    radiosity_mesh, radiosity_mesh_operators        it as meshes, which are `generated`: in no picture
 """
 
 import atexit
@@ -29,9 +31,24 @@ bl_info = {
 
 def _modules():
     # Imported on demand, so that `import triptych.gltf` works in a script that never registers.
-    from . import engine, export_operator, panels, properties, radiosity, ray_tree, ray_tree_panel, shading_sheet
+    from . import (
+        engine,
+        export_operator,
+        panels,
+        properties,
+        radiosity,
+        radiosity_mesh_operators,
+        radiosity_panel,
+        radiosity_play,
+        ray_tree,
+        ray_tree_panel,
+        shading_sheet,
+    )
 
-    return (properties, engine, radiosity, panels, export_operator, shading_sheet, ray_tree, ray_tree_panel)
+    return (
+        *(properties, engine, radiosity, panels, export_operator, shading_sheet, ray_tree, ray_tree_panel),
+        *(radiosity_play, radiosity_mesh_operators, radiosity_panel),
+    )
 
 
 _registered = []

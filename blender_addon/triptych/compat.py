@@ -187,6 +187,52 @@ def mesh_triangles(mesh):
     return corners.view(np.uint32), _collect(mesh.loop_triangles, "polygon_index", np.int32)
 
 
+def mesh_values(mesh, name):
+    """A named attribute as an array (n, or n × 3 or 4), or None."""
+    attribute = mesh.attributes.get(name)
+    if attribute is None:
+        return None
+    dtype, word, width = _ATTRIBUTE_TYPES[attribute.data_type]
+    values = np.empty(len(attribute.data) * width, dtype)
+    attribute.data.foreach_get(word, values)
+    return values.reshape(-1, width) if width > 1 else values
+
+
+def set_mesh_values(mesh, name, domain, values):
+    """Gives a mesh the attribute: n int32 or float32, n × 3 (vectors) or n × 4 (colours)."""
+    width = values.shape[1] if values.ndim > 1 else 1
+    kind = next(key for key, row in _ATTRIBUTE_TYPES.items() if row[0] == values.dtype and row[2] == width)
+    attribute = mesh.attributes.get(name)
+    if attribute is not None and (attribute.data_type, attribute.domain) != (kind, domain):
+        mesh.attributes.remove(attribute)
+        attribute = None
+    if attribute is None:
+        attribute = mesh.attributes.new(name, kind, domain)
+    attribute.data.foreach_set(_ATTRIBUTE_TYPES[kind][1], values.ravel())
+
+
+# Blender's type: numpy's, the word of foreach_get, numbers of each item.
+_ATTRIBUTE_TYPES = {
+    "INT": (np.int32, "value", 1),
+    "FLOAT": (np.float32, "value", 1),
+    "FLOAT_VECTOR": (np.float32, "vector", 3),
+    "FLOAT_COLOR": (np.float32, "color", 4),
+}
+
+
+def set_mesh_polygons(mesh, positions, offsets, corners):
+    """Fills an empty mesh: n × 3 float32, faces + 1 first corners, and the vertex of each corner, uint32."""
+    mesh.vertices.add(len(positions))
+    mesh.loops.add(len(corners))
+    mesh.polygons.add(len(offsets) - 1)
+    mesh.vertices.foreach_set("co", positions.ravel())
+    mesh.loops.foreach_set("vertex_index", corners.view(np.int32))
+    mesh.polygons.foreach_set("loop_start", offsets[:-1].view(np.int32))
+    if VERSION < (4, 1):  # read-only afterwards, and found from where the next face starts
+        mesh.polygons.foreach_set("loop_total", np.diff(offsets).astype(np.int32))
+    mesh.update(calc_edges=True)
+
+
 # -------------------------------------------------------------------------------------------------------------- results
 
 

@@ -85,27 +85,32 @@ class _Job:
             self._report(scene.warnings + core_scene.warnings())
             with core.Render(core_scene, method) as render:
                 self.render = render
-                render.set_film(*self.film, self.window)
-                for name, value in values.items():
-                    render.set(name, value)
-                if not engine.is_preview:
-                    self.passes = properties.wanted_passes(depsgraph.view_layer, method)
-                for row, _ in self.passes:
-                    render.add_pass(row.name)
-                if method != "radiosity":
-                    if not engine.is_preview:
-                        radiosity.forget()
-                elif not radiosity.show(core_scene, render, values, self._progress):
-                    return ""
                 try:
-                    if self.stopped():  # a solution that is not whole is shown without asking again
-                        render.run()
-                    else:
-                        render.run(self._progress, None if bpy.app.background else self._tile)
-                    self.finish()
+                    self._render(core_scene, method, values)
                 finally:
                     self.render = None
         return ""
+
+    def _render(self, core_scene, method, values):
+        engine, render = self.engine, self.render
+        render.set_film(*self.film, self.window)
+        for name, value in values.items():
+            render.set(name, value)
+        if not engine.is_preview:
+            self.passes = properties.wanted_passes(self.depsgraph.view_layer, method)
+        for row, _ in self.passes:
+            render.add_pass(row.name)
+        if method == "radiosity":
+            name = self.depsgraph.scene.name
+            if not radiosity.show(name, core_scene, render, values, self._progress, self._report):
+                return
+        elif not engine.is_preview:
+            radiosity.forget()
+        if self.stopped():  # a solution that is not whole is shown without asking again
+            render.run()
+        else:
+            render.run(self._progress, None if bpy.app.background else self._tile)
+        self.finish()
 
     def _shutter(self, method):
         """None where nothing is to be blurred."""

@@ -9,6 +9,7 @@ from .export_mesh import export_mesh
 from .export_motion import Motion, may_bend
 from .export_texture import Textures
 from .export_world import export_world
+from .generated import is_generated
 from .transforms import rows
 
 
@@ -78,7 +79,9 @@ class _Exporter:
         """What the depsgraph shows: (a key that is the same at every time, instance, evaluated object)."""
         for instance in self.depsgraph.object_instances:
             shown = instance.object
-            if not instance.show_self or (self.depsgraph.mode != "RENDER" and shown.original.hide_render):
+            if not instance.show_self or is_generated(shown.original):
+                continue
+            if self.depsgraph.mode != "RENDER" and shown.original.hide_render:
                 continue
             parent = instance.parent.original.as_pointer() if instance.parent else 0
             yield (shown.original.as_pointer(), parent, *instance.persistent_id), instance, shown

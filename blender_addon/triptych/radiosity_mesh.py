@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The elements and links of a radiosity solution as meshes, whose attributes are what the solver knows of them.
+
+Of faces, in W/m²: radiosity, irradiance, unshot, emission; reflectance; area (m²), element (its number), and the
+form_factor of a chosen element towards each. Of vertices: vertex_radiosity and vertex_irradiance. Of corners: shown,
+the colours of the viewport's Solid mode. Of links, which are edges: factor, receiver and source (−1: a group).
+"""
+
+from math import dist, pi
+
+import numpy as np
+
+from . import abi, compat, data, generated
+
+_OF_FACES = ("radiosity", "irradiance", "unshot", "emission", "reflectance")
+_SMOOTH = {"radiosity": "vertex_radiosity", "irradiance": "vertex_irradiance"}
+SHOWN = "shown"
+_LIFT = 2e-4  # of the scene's size: how far the mesh stands before the surfaces, which it coincides with
+
+
+# ------------------------------------------------------------------------------------------------------------- elements
+
+
+def update(scene, solution, look):
+    """The mesh object of a core.Radiosity in a bpy.types.Scene, made or brought up to date.
+
+    look: window_manager.triptych_radiosity.
+    """
+    offsets, corners = solution.polygons()
+    made = generated.find_or_make(scene, generated.MESH, "Radiosity Mesh")
+    mesh = made.data
+    _check_mode(made)
+    positions = solution.read("vertex_position")
+    if not _is_of(mesh, offsets, corners):
+        _build(mesh, offsets, corners, positions)
+    mesh.vertices.foreach_set("co", positions.ravel())
+    elements = compat.mesh_values(mesh, "element")
+    for name in _OF_FACES:
+        compat.set_mesh_values(mesh, name, "FACE", solution.read(name)[elements])
+    compat.set_mesh_values(mesh, "area", "FACE", solution.read("area")[elements])
+    compat.set_mesh_values(mesh, "vertex_radiosity", "POINT", _opaque(solution.read("vertex_radiosity")))
+    compat.set_mesh_values(mesh, "vertex_irradiance", "POINT", solution.read("vertex_irradiance"))
+    color(mesh, look.shown, look.scale, scene.triptych.radiosity_smooth)
+    if not made.modifiers and len(positions):
+        _lift(made, _LIFT * dist(positions.min(axis=0), positions.max(axis=0)))
+    return made
+
+
+def _check_mode(made):
+    if made.data.is_editmode:
+        raise data.ExportError(f"'{made.name}' is being edited: leave Edit Mode to see it change")
+
+
+def _is_of(mesh, offsets, corners):
+    """Whether the mesh has these polygons."""
+    return (
+        mesh.attributes.get("element") is not None
+        and np.array_equal(compat.mesh_face_offsets(mesh), offsets)
+        and np.array_equal(compat.mesh_corner_vertices(mesh), corners)
+    )
+
+
+def _build(mesh, offsets, corners, positions):
+    mesh.clear_geometry()
+    compat.set_mesh_polygons(mesh, positions, offsets, corners)
+    compat.set_mesh_values(mesh, "element", "FACE", np.arange(len(offsets) - 1, dtype=np.int32))
+    mesh.validate()  # takes elements without an area out
+    mesh.update()
+
+
+def _lift(made, height):
+    """Moves the mesh out of the surfaces where it is seen; its data stay in them."""
+    modifier = made.modifiers.new("Lift", "DISPLACE")
+    modifier.strength, modifier.mid_level = height, 0
+    modifier.show_in_editmode = modifier.show_on_cage = True
+
+
+def color(mesh, value, scale, smooth):
+    """Colours the mesh by one of its attributes, for viewports in Solid mode; scale: the value that is white, or 0."""
+    known = _SMOOTH.get(value) if smooth else None
+    values = compat.mesh_values(mesh, known or value)
+    if values is None:
+        values = np.zeros(len(mesh.polygons))
+    if values.ndim == 1:
+        values = np.repeat(values[:, None], 3, axis=1)
+    scale = scale or _automatic_scale(value, values)
+    offsets = compat.mesh_face_offsets(mesh)
+    of_corners = compat.mesh_corner_vertices(mesh) if known else np.repeat(np.arange(len(values)), np.diff(offsets))
+    compat.set_mesh_values(mesh, SHOWN, "CORNER", _opaque(values[of_corners, :3] / scale))
+    mesh.color_attributes.active_color = mesh.color_attributes[SHOWN]
+    mesh.update()
+
+
+def _automatic_scale(value, values):
+    """As pictures show it: radiance, which is radiosity by π."""
+    if value == "form_factor":
+        return values.max(initial=0) or 1
+    return 1 if value == "reflectance" else pi
+
+
+def _opaque(colors):
+    return np.hstack([colors, np.ones((len(colors), 1))]).astype(np.float32)
+
+
+def set_form_factors(made, solution):
+    """Gives the faces the row of form factors of the active one. (its element, the row's sum)"""
+    _check_mode(made)
+    mesh = made.data
+    elements = compat.mesh_values(mesh, "element")
+    active = mesh.polygons.active
+    if elements is None or not 0 <= active < len(elements):
+        raise data.ExportError(f"'{made.name}' has no active face: select one in Edit Mode")
+    element = int(elements[active])
+    offsets, corners = solution.polygons()
+    if element >= len(offsets) - 1 or elements.max() >= len(offsets) - 1:
+        raise data.ExportError(f"'{made.name}' is of other elements than the solution: press Radiosity Mesh")
+    row = solution.form_factors(element)
+    compat.set_mesh_values(mesh, "form_factor", "FACE", row[elements].astype(np.float32))
+    return element, row.sum()
+
+
+# ---------------------------------------------------------------------------------------------------------------- links
+
+
+def update_links(scene, solution, most):
+    """The object of the links of a core.Radiosity, at most so many, the largest factors first. Gives how many there are
+    in all."""
+    links = solution.links()
+    total = len(links)
+    size = links["factor"].mean(axis=1)
+    links = links[np.argsort(-size, kind="stable")[:most]]
+    made = generated.find_or_make(scene, generated.LINKS, "Radiosity Links")
+    made.display_type = "WIRE"
+    mesh = made.data
+    _check_mode(made)
+    mesh.clear_geometry()
+    mesh.vertices.add(2 * len(links))
+    mesh.vertices.foreach_set("co", np.stack([links["from"], links["to"]], axis=1).ravel())
+    mesh.edges.add(len(links))
+    mesh.edges.foreach_set("vertices", np.arange(2 * len(links), dtype=np.int32))
+    compat.set_mesh_values(mesh, "factor", "EDGE", links["factor"])
+    for name in ("source", "receiver"):
+        numbers = np.where(links[name] == abi.NO_ELEMENT, -1, links[name].astype(np.int64))
+        compat.set_mesh_values(mesh, name, "EDGE", numbers.astype(np.int32))
+    mesh.update(calc_edges_loose=True)
+    return total
+
+
+# ------------------------------------------------------------------------------------------------------------- viewport
+
+
+def show_colors(windows):
+    """Has viewports in Solid mode show the colours of meshes, as they are."""
+    for window in windows:
+        for area in window.screen.areas:
+            if area.type == "VIEW_3D":
+                shading = area.spaces.active.shading
+                shading.light, shading.color_type = "FLAT", "VERTEX"
