@@ -36,9 +36,17 @@ TrpStatus run(TrpRadiosity* radiosity, const TrpCallbacks* callbacks, Work&& wor
         check_pointer(radiosity, "radiosity");
         const RenderEvents events = events_of(callbacks);
         const Running running(*radiosity, "radiosity solution");
-        const bool whole = work(*radiosity->data, events);
-        if (radiosity->data->has_elements()) number_leaves(*radiosity);
-        return whole ? TRP_OK : TRP_CANCELLED;
+        const auto number = [&] {
+            if (radiosity->data->has_elements()) number_leaves(*radiosity);
+        };
+        try {
+            const bool whole = work(*radiosity->data, events);
+            number();
+            return whole ? TRP_OK : TRP_CANCELLED;
+        } catch (...) {
+            number();  // what there is can be read
+            throw;
+        }
     });
 }
 

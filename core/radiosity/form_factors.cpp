@@ -121,6 +121,12 @@ void hemisphere_row(const FormFactorJob& job, uint32_t i, uint32_t first, bool m
 
 }  // namespace
 
+bool tints(const Snapshot& snapshot) {
+    return snapshot.any_transmission || snapshot.any_holes ||
+           std::any_of(snapshot.materials.begin(), snapshot.materials.end(),
+                       [](const CompiledMaterial& m) { return m.mirrors; });
+}
+
 void form_factor_row(const FormFactorJob& job, uint32_t i, uint32_t first, Vec3d* out) {
     std::fill_n(out, job.elements.size() - first, Vec3d(0, 0, 0));
     const FormFactors kind = job.settings.form_factors;

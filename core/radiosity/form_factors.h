@@ -7,7 +7,8 @@
 //               Hemi-Cube", 1985)
 //
 // What passes glass or comes by a mirror is tinted: a row has three channels. What mirrors hand on is sampled by rays,
-// whichever kind the rest is.
+// whichever kind the rest is. Where nothing is tinted, no row's sum is above 1, but for contour integrals of faces in one
+// place, of which rays between points tell no one from the other.
 #pragma once
 
 #include <atomic>
@@ -24,6 +25,9 @@ struct FormFactorJob {
     std::atomic<bool>* cancelled = nullptr;
     std::atomic<uint64_t>* rays = nullptr;
 };
+
+// Whether anything in the scene tints.
+bool tints(const Snapshot& snapshot);
 
 // Row `i` from column `first` on into out[0 … size − first); `out` is set to 0 first. Runs in the current arena.
 void form_factor_row(const FormFactorJob& job, uint32_t i, uint32_t first, Vec3d* out);

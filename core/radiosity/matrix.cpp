@@ -2,7 +2,8 @@
 //
 // It is kept in its symmetric form G_ij = A_i F_ij = A_j F_ji, one matrix for each colour where glass or mirrors tint
 // what passes. Sampled rows are made symmetric, the row of more rays to the area counting for more, and scaled so that
-// each keeps its sum, of which rays miss nothing: G ← D G D (Sinkhorn and Knopp 1967).
+// each keeps its sum, of which rays miss nothing: G ← D G D (Sinkhorn and Knopp 1967). Others are scaled where their
+// sum is above 1, as that of what sees two faces in one place.
 #include <algorithm>
 #include <cmath>
 
@@ -13,7 +14,8 @@
 namespace trp {
 namespace {
 
-constexpr double kSolved = 1e-10;  // residual, of the greatest radiosity
+constexpr double kSolved = 1e-10;   // residual, of the greatest radiosity
+constexpr double kRowError = 1e-6;  // of the sum of a row of contour integrals
 
 class MatrixSolver : public Solver {
   public:
@@ -26,7 +28,9 @@ class MatrixSolver : public Solver {
 
   private:
     bool assemble(const SolverJob& job);
-    void make_symmetric(const SolverJob& job, std::vector<double>& matrix) const;
+    std::vector<double> sums_of(const std::vector<double>& matrix) const;
+    void make_symmetric(const Elements& elements, std::vector<double>& matrix) const;
+    void scale(std::vector<double>& matrix, const std::vector<double>& sums) const;
     void sweep(const SolverJob& job);
 
     size_t count_ = 0;
@@ -37,9 +41,7 @@ class MatrixSolver : public Solver {
 bool MatrixSolver::assemble(const SolverJob& job) {
     const Elements& elements = job.elements;
     count_ = elements.size();
-    const bool tinted = elements.snapshot().any_transmission || elements.snapshot().any_holes ||
-                        std::any_of(elements.snapshot().materials.begin(), elements.snapshot().materials.end(),
-                                    [](const CompiledMaterial& m) { return m.mirrors; });
+    const bool tinted = tints(elements.snapshot());
     const size_t colors = tinted ? 3 : 1, bytes = colors * count_ * count_ * sizeof(double);
     if (bytes >> 20 > job.settings.radiosity.memory)
         fail(TRP_ERROR_MEMORY,
@@ -63,31 +65,51 @@ bool MatrixSolver::assemble(const SolverJob& job) {
         }
     });
     if (job.cancelled) return false;
-    for (std::vector<double>& matrix : matrices)
-        if (halves)
-            for (size_t i = 0; i < count_; ++i)
-                for (size_t j = 0; j < i; ++j) matrix[i * count_ + j] = matrix[j * count_ + i];
-        else
-            make_symmetric(job, matrix);
+    for (std::vector<double>& matrix : matrices) {
+        if (!halves) {
+            const std::vector<double> sums = sums_of(matrix);
+            make_symmetric(elements, matrix);
+            scale(matrix, sums);
+            continue;
+        }
+        for (size_t i = 0; i < count_; ++i)
+            for (size_t j = 0; j < i; ++j) matrix[i * count_ + j] = matrix[j * count_ + i];
+        std::vector<double> sums = sums_of(matrix);
+        bool above = false;
+        for (size_t i = 0; i < count_; ++i) {
+            const double area = elements[static_cast<uint32_t>(i)].area;
+            above |= sums[i] > (1 + kRowError) * area;
+            sums[i] = std::min(sums[i], area);
+        }
+        if (above && !tinted) scale(matrix, sums);
+    }
     matrices_ = std::move(matrices);
     radiosity_.resize(count_);
     for (size_t i = 0; i < count_; ++i) radiosity_[i] = job.solution.emitted(static_cast<uint32_t>(i));
     return true;
 }
 
-void MatrixSolver::make_symmetric(const SolverJob& job, std::vector<double>& matrix) const {
-    const Elements& elements = job.elements;
-    std::vector<double> sums(count_, 0.0), scale(count_, 1.0);
+std::vector<double> MatrixSolver::sums_of(const std::vector<double>& matrix) const {
+    std::vector<double> sums(count_, 0.0);
     parallel_ranges(count_, 16, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i)
             for (size_t j = 0; j < count_; ++j) sums[i] += matrix[i * count_ + j];
     });
+    return sums;
+}
+
+void MatrixSolver::make_symmetric(const Elements& elements, std::vector<double>& matrix) const {
     for (size_t i = 0; i < count_; ++i)
         for (size_t j = 0; j < i; ++j) {
             const double a = elements[static_cast<uint32_t>(i)].area, b = elements[static_cast<uint32_t>(j)].area;
             double &ij = matrix[i * count_ + j], &ji = matrix[j * count_ + i];
             ij = ji = (b * ij + a * ji) / (a + b);
         }
+}
+
+// So that rows have the sums.
+void MatrixSolver::scale(std::vector<double>& matrix, const std::vector<double>& sums) const {
+    std::vector<double> scale(count_, 1.0);
     for (int round = 0; round < 50; ++round) {
         double worst = 0;
         std::vector<double> now(count_, 0.0);

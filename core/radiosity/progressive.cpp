@@ -59,12 +59,17 @@ void ProgressiveSolver::begin(const SolverJob& job) {
 void ProgressiveSolver::shoot(const SolverJob& job, uint32_t patch) {
     const Elements& elements = job.elements;
     Solution& solution = job.solution;
-    const Vec3d shot = unshot_of(job, patch) * static_cast<double>(elements[patch].area);
-    if (shot == Vec3d(0, 0, 0)) return;
+    const Vec3d unshot = unshot_of(job, patch) * static_cast<double>(elements[patch].area);
+    if (unshot == Vec3d(0, 0, 0)) return;
     form_factor_row({elements, job.settings.radiosity, job.settings.seed + job.statistics.steps * 0x9E3779B9u,
                      &job.cancelled, &job.statistics.rays},
                     patch, 0, row_.data());
     if (job.cancelled) return;  // as if it had not begun
+    // No more arrives than was shot.
+    Vec3d sum(0, 0, 0);
+    for (const Vec3d& factor : row_) sum += factor;
+    const double most = tints(elements.snapshot()) ? 1 : std::max({sum.x, sum.y, sum.z, 1.0});
+    const Vec3d shot = unshot / most;
     for_each_leaf(elements, patch, [&](uint32_t leaf) { solution.unshot[leaf] = Vec3d(0, 0, 0); });
     parallel_ranges(elements.size(), 4096, [&](size_t begin, size_t end) {
         for (size_t j = begin; j < end; ++j) {
