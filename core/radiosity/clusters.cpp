@@ -1,12 +1,33 @@
 #include "radiosity/clusters.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <numeric>
+#include <span>
 
 namespace trp {
 namespace {
 
 constexpr uint32_t kFewestClustered = 256;  // of fewer, each pair has its links
+constexpr float kFlat = 1e-4f;              // of a cluster's radius
+
+// The cone of the normals of a cluster's roots about their mean, and whether all lie in one plane.
+void set_cone(const Elements& elements, std::span<const uint32_t> roots, ElementCluster& cluster) {
+    Vec3 sum(0, 0, 0);
+    for (const uint32_t root : roots) sum += elements.normal(root) * elements[root].area;
+    const float length = sum.length();
+    cluster.axis = length > 0 ? sum / length : elements.normal(roots[0]);
+    float least = 1;
+    cluster.flat = true;
+    for (const uint32_t root : roots) {
+        least = std::min(least, cluster.axis.dot(elements.normal(root)));
+        const float height = (elements[root].centre - elements[roots[0]].centre).dot(cluster.axis);
+        cluster.flat &= std::abs(height) <= kFlat * cluster.radius;
+    }
+    cluster.flat &= least > 1 - kFlat * kFlat;
+    cluster.spread = std::acos(std::clamp(least, -1.0f, 1.0f));
+}
 
 // Halves by the middle of the longest side of the centres' box.
 NodeId make_cluster(const Elements& elements, uint32_t first, uint32_t count, ElementClusters& out) {
@@ -30,8 +51,12 @@ NodeId make_cluster(const Elements& elements, uint32_t first, uint32_t count, El
     for (auto root = begin; root != end; ++root) {
         cluster.area += elements[*root].area;
         elements.corners(*root, corners);
-        for (const Vec3d& p : corners) cluster.radius = std::max(cluster.radius, (Vec3(p) - cluster.centre).length());
+        for (const Vec3d& p : corners) {
+            cluster.radius = std::max(cluster.radius, (Vec3(p) - cluster.centre).length());
+            cluster.box.extend(Vec3(p));
+        }
     }
+    set_cone(elements, std::span(&*begin, count), cluster);
     out.clusters.push_back(cluster);
     const NodeId a = make_cluster(elements, first, count / 2, out),
                  b = make_cluster(elements, first + count / 2, count - count / 2, out);
@@ -51,6 +76,32 @@ ElementClusters make_element_clusters(const Elements& elements) {
     out.areas.push_back(0);
     for (const uint32_t root : out.roots) out.areas.push_back(out.areas.back() + elements[root].area);
     return out;
+}
+
+bool ElementClusters::faces(const Elements& elements, NodeId from, NodeId to) const {
+    const bool clustered = is_cluster(from);
+    const Vec3 axis = clustered ? of(from).axis : elements.normal(from), origin = centre(elements, from),
+               way = centre(elements, to) - origin;
+    const float reach = radius(elements, to);
+    if (!clustered && !is_cluster(to)) return way.dot(axis) > -reach;
+    if (!clustered || of(from).flat) {
+        // The highest corner of the box over the plane.
+        const Vec3 on_plane = clustered ? elements[roots[of(from).first_root]].centre : origin;
+        float height = way.dot(axis) + reach;
+        if (is_cluster(to)) {
+            height = -axis.dot(on_plane);
+            for (int k = 0; k < 3; ++k) height += axis[k] * (axis[k] > 0 ? of(to).box.max[k] : of(to).box.min[k]);
+        }
+        return height > kFlat * reach;
+    }
+    const float both = reach + radius(elements, from), distance = way.length();
+    if (distance <= both) return true;
+    const float angle = std::acos(std::clamp(way.dot(axis) / distance, -1.0f, 1.0f));
+    return angle - of(from).spread - std::asin(both / distance) < std::numbers::pi_v<float> / 2;
+}
+
+bool ElementClusters::may_see(const Elements& elements, NodeId a, NodeId b) const {
+    return faces(elements, a, b) && faces(elements, b, a);
 }
 
 uint32_t ElementClusters::root_at(const ElementCluster& cluster, float share) const {

@@ -22,6 +22,11 @@ struct ElementCluster {
     uint32_t first_root = 0, root_count = 0;  // in ElementClusters::roots
     Vec3 centre{0, 0, 0};
     float radius = 0, area = 0;
+    // A cone that holds the normals of its roots, radians; and its box. Where it is flat, all roots are in one plane.
+    Vec3 axis{0, 0, 1};
+    float spread = 0;
+    Bounds box;
+    bool flat = false;
 };
 
 struct ElementClusters {
@@ -40,8 +45,13 @@ struct ElementClusters {
     float radius(const Elements& elements, NodeId node) const {
         return is_cluster(node) ? of(node).radius : elements.radius(node);
     }
+    // False where no part of one node can lie before a part of the other, and after it.
+    bool may_see(const Elements& elements, NodeId a, NodeId b) const;
     // The root that a share of a cluster's area, in [0, 1), falls into.
     uint32_t root_at(const ElementCluster& cluster, float share) const;
+
+  private:
+    bool faces(const Elements& elements, NodeId from, NodeId to) const;
 };
 
 // Of the elements that are there now; none where they are few.

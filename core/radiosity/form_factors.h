@@ -7,8 +7,8 @@
 //               Hemi-Cube", 1985)
 //
 // What passes glass or comes by a mirror is tinted: a row has three channels. What mirrors hand on is sampled by rays,
-// whichever kind the rest is. Where nothing is tinted, no row's sum is above 1, but for contour integrals of faces in one
-// place, of which rays between points tell no one from the other.
+// whichever kind the rest is. Where nothing is tinted, no row's sum is above 1, but for contour integrals of faces in
+// one place, of which rays between points tell no one from the other.
 #pragma once
 
 #include <atomic>

@@ -33,15 +33,6 @@ constexpr uint32_t kMostSweeps = 500;
 constexpr size_t kMost = 1 << 19;
 constexpr float kSmallest = 1.0f / 1024;  // side of an element, of the scene's extent, where no size is given
 
-// Whether a part of each of two elements lies before the other's plane.
-bool may_see(const Elements& elements, uint32_t a, uint32_t b) {
-    const auto reaches = [&](uint32_t from, uint32_t to) {
-        const float height = (elements[to].centre - elements[from].centre).dot(elements.normal(from));
-        return height > -elements.radius(to);
-    };
-    return reaches(a, b) && reaches(b, a);
-}
-
 class HierarchicalSolver : public Solver {
   public:
     bool step(const SolverJob& job) override;
@@ -129,9 +120,10 @@ std::vector<Link> HierarchicalSolver::first_links(const Elements& elements) cons
     std::vector<Link> out;
     for (uint32_t i = 0; i < elements.size() && clusters_.clusters.empty(); ++i)
         for (uint32_t j = 0; j < elements.size(); ++j)
-            if (i != j && may_see(elements, i, j)) out.push_back({i, j});
+            if (i != j && clusters_.may_see(elements, i, j)) out.push_back({i, j});
     for (const ElementCluster& cluster : clusters_.clusters) {
         const auto [a, b] = std::array{cluster.children[0], cluster.children[1]};
+        if (!clusters_.may_see(elements, a, b)) continue;
         out.push_back({a, b});
         out.push_back({b, a});
     }
@@ -458,8 +450,7 @@ bool HierarchicalSolver::refine(const SolverJob& job) {
             Link next{by_receiver ? part : link.receiver, by_receiver ? link.source : part};
             next.agreed = link.agreed / static_cast<float>(below.count);
             next.allowed = allowed(link);
-            if (is_cluster(next.receiver) || is_cluster(next.source) || may_see(elements, next.receiver, next.source))
-                fresh.push_back(next);
+            if (clusters_.may_see(elements, next.receiver, next.source)) fresh.push_back(next);
         }
     }
     if (kept.size() == links_.size() && elements.size() == old_size) return false;

@@ -111,6 +111,17 @@ float LinkEvaluator::greatest_factor(const Link& link) const {
     return gap > 0 ? std::min(1.0f, area / (std::numbers::pi_v<float> * gap * gap)) : 1;
 }
 
+// What surfaces that are turned this way and that get differs, and so does what they give, the more the larger they are
+// for their distance.
+double LinkEvaluator::cluster_error(const Link& link, const double (&arriving)[kLinkPoints][3], double mean) const {
+    double squares = 0;
+    for (const auto& point : arriving) squares += (point[0] - mean) * (point[0] - mean) / (kLinkPoints - 1);
+    const float distance =
+                    (clusters_.centre(elements_, link.source) - clusters_.centre(elements_, link.receiver)).length(),
+                size = clusters_.radius(elements_, link.receiver) + clusters_.radius(elements_, link.source);
+    return std::sqrt(squares) + mean * static_cast<double>(std::min(1.0f, size / std::max(distance, 1e-37f)));
+}
+
 // Between elements, the smaller the receiver the less.
 double LinkEvaluator::unseen_share(const Link& link) const {
     const float distance = (elements_[link.source].centre - elements_[link.receiver].centre).length(),
@@ -339,7 +350,8 @@ void LinkEvaluator::finish(Link& link, uint32_t number, const Ways& ways) {
     const double twist = std::sqrt(std::max(squares - mean * mean - points.of(line[1], line[2]), 0.0)),
                  smooth = kCurved * (most - least) * (most - least) / mean + twist,
                  shadow = std::sqrt(std::max(seen2 - seen * seen - noise, 0.0));
-    link.spread = clustered ? greatest_factor(link)
+    link.spread = clustered ? static_cast<float>(std::min(cluster_error(link, arriving, mean),
+                                                          static_cast<double>(greatest_factor(link))))
                             : static_cast<float>(smooth * seen + mean * (kShadow * shadow + unseen_share(link)));
 }
 

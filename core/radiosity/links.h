@@ -50,6 +50,7 @@ class LinkEvaluator {
     Places places_of(NodeId node) const;
     Vec3 point_near(NodeId node, const Place& place, float u, float v) const;
     double factor_at(const Place& place, const Places& sources, NodeId source);
+    double cluster_error(const Link& link, const double (&arriving)[kLinkPoints][3], double mean) const;
     float greatest_factor(const Link& link) const;
     double unseen_share(const Link& link) const;
     static constexpr uint32_t kOfLink = kLinkPoints * kLinkPoints, kInGroup = kBatch / kOfLink;
