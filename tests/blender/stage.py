@@ -19,6 +19,8 @@ def prepare(scene, width=64, height=48, engine="TRIPTYCH"):
     scene.display_settings.display_device = "sRGB"
     scene.world = bpy.data.worlds.new("World")
     scene.world.color = (0, 0, 0)
+    if scene.world.node_tree is not None:  # from 5.0 a new world has nodes, which are grey
+        scene.world.node_tree.nodes.clear()
 
 
 def link(scene, name, content, location=(0, 0, 0), rotation=(0, 0, 0), scale=(1, 1, 1)):
@@ -114,6 +116,8 @@ def render(scene, multilayer=False):
         settings.media_type = "MULTI_LAYER_IMAGE" if multilayer else "IMAGE"
     settings.file_format = "OPEN_EXR_MULTILAYER" if multilayer else "OPEN_EXR"
     settings.color_depth, settings.exr_codec = "32", "NONE"
+    if hasattr(settings, "use_exr_interleave"):  # from 5.0; else each layer is a part of its own
+        settings.use_exr_interleave = True
     if not multilayer:
         settings.color_mode = "RGBA"
     with tempfile.TemporaryDirectory() as folder:
