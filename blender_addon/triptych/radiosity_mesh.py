@@ -16,6 +16,7 @@ _OF_FACES = ("radiosity", "irradiance", "unshot", "emission", "reflectance")
 _SMOOTH = {"radiosity": "vertex_radiosity", "irradiance": "vertex_irradiance"}
 SHOWN = "shown"
 _LIFT = 2e-4  # of the scene's size: how far the mesh stands before the surfaces, which it coincides with
+_WHITE_FORM_FACTORS = 4  # times the mean by area are white
 
 
 # ------------------------------------------------------------------------------------------------------------- elements
@@ -81,21 +82,20 @@ def color(mesh, value, scale, smooth):
     values = compat.mesh_values(mesh, known or value)
     if values is None:
         values = np.zeros(len(mesh.polygons))
+    white = pi  # as pictures have it: radiance, which is radiosity by π
+    if value == "form_factor":  # of elements of any size, so by their areas
+        area = compat.mesh_values(mesh, "area")
+        white = _WHITE_FORM_FACTORS * values.sum() / max(area.sum(), 1e-30) or 1
+        values = values / np.maximum(area, 1e-30)
+    elif value == "reflectance":
+        white = 1
     if values.ndim == 1:
         values = np.repeat(values[:, None], 3, axis=1)
-    scale = scale or _automatic_scale(value, values)
     offsets = compat.mesh_face_offsets(mesh)
     of_corners = compat.mesh_corner_vertices(mesh) if known else np.repeat(np.arange(len(values)), np.diff(offsets))
-    compat.set_mesh_values(mesh, SHOWN, "CORNER", _opaque(values[of_corners, :3] / scale))
+    compat.set_mesh_values(mesh, SHOWN, "CORNER", _opaque(values[of_corners, :3] / (scale or white)))
     mesh.color_attributes.active_color = mesh.color_attributes[SHOWN]
     mesh.update()
-
-
-def _automatic_scale(value, values):
-    """As pictures show it: radiance, which is radiosity by π."""
-    if value == "form_factor":
-        return values.max(initial=0) or 1
-    return 1 if value == "reflectance" else pi
 
 
 def _opaque(colors):

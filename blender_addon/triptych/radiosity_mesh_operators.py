@@ -60,19 +60,22 @@ class TRIPTYCH_OT_radiosity_form_factors(_OfMesh, bpy.types.Operator):
         "shares of what leaves it that arrive there. They are shown, and the mesh's attribute form_factor"
     )
 
+    def execute(self, context):
+        editing = context.mode == "EDIT_MESH"  # where meshes have no data to be read
+        if editing:
+            bpy.ops.object.mode_set(mode="OBJECT")
+        try:
+            return super().execute(context)
+        finally:
+            if editing:
+                bpy.ops.object.mode_set(mode="EDIT")
+
     def _work(self, context, kept):
         made = generated.find(context.scene, generated.MESH)
         if made is None:
             raise data.ExportError("there is no radiosity mesh to choose an element of: press Radiosity Mesh")
-        editing = made.data.is_editmode
-        if editing:
-            bpy.ops.object.mode_set(mode="OBJECT")
-        try:
-            element, total = radiosity_mesh.set_form_factors(made, kept.solution)
-            context.window_manager.triptych_radiosity.shown = "form_factor"
-        finally:
-            if editing:
-                bpy.ops.object.mode_set(mode="EDIT")
+        element, total = radiosity_mesh.set_form_factors(made, kept.solution)
+        context.window_manager.triptych_radiosity.shown = "form_factor"
         self.report({"INFO"}, f"Element {element}: its form factors add up to {total:.4f}")
 
 

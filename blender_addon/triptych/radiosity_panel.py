@@ -48,7 +48,8 @@ class TriptychRadiosityLook(bpy.types.PropertyGroup):
     scale: bpy.props.FloatProperty(
         name="White",
         description=(
-            "The value that is shown as white. 0: π W/m², as in pictures; 1 for reflectance; the greatest form factor"
+            "The value that is shown as white, of form factors by the elements' areas. "
+            "0: π W/m², as in pictures; 1 for reflectance; four times the mean form factor"
         ),
         min=0,
         update=_recolor,
