@@ -1,10 +1,8 @@
 // Path tracing of Mitsuba's Cornell box against what Mitsuba 3.9.1 makes of it: its `path` integrator at max_depth 16,
 // 16384 samples, 256 × 256 pixels, box filter; means over 64 × 64 pixels, rows from above. Noise of the figures: 2e-5
 // relative. SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
+#include "support/mitsuba.h"
 
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 
 #include "framing.h"
@@ -15,23 +13,25 @@ namespace {
 
 using cli::check;
 
-constexpr uint32_t kSide = 256, kBlocks = 4, kBlock = kSide / kBlocks;
-constexpr double kMitsuba[kBlocks][kBlocks][3] = {{{0.118088, 0.0191189, 0.00746111},
-                                                   {1.0248, 0.707361, 0.335532},
-                                                   {0.988379, 0.707693, 0.332958},
-                                                   {0.0512935, 0.0410883, 0.00776315}},
-                                                  {{0.198083, 0.0194391, 0.00859446},
-                                                   {0.301234, 0.132086, 0.0562161},
-                                                   {0.297364, 0.160201, 0.0642262},
-                                                   {0.0550297, 0.0825448, 0.011288}},
-                                                  {{0.125933, 0.0108802, 0.0047567},
-                                                   {0.12482, 0.0448407, 0.0179058},
-                                                   {0.192397, 0.104906, 0.0413031},
-                                                   {0.0442615, 0.0646081, 0.00888876}},
-                                                  {{0.121151, 0.0331668, 0.0145668},
-                                                   {0.180327, 0.0752599, 0.0328029},
-                                                   {0.0317981, 0.0121815, 0.00468755},
-                                                   {0.0536794, 0.0476701, 0.0111867}}};
+constexpr uint32_t kSide = 256;
+constexpr trp_test::BlockMeans kMitsuba = {{
+    {0.118088, 0.0191189, 0.00746111},
+    {1.0248, 0.707361, 0.335532},
+    {0.988379, 0.707693, 0.332958},
+    {0.0512935, 0.0410883, 0.00776315},
+    {0.198083, 0.0194391, 0.00859446},
+    {0.301234, 0.132086, 0.0562161},
+    {0.297364, 0.160201, 0.0642262},
+    {0.0550297, 0.0825448, 0.011288},
+    {0.125933, 0.0108802, 0.0047567},
+    {0.12482, 0.0448407, 0.0179058},
+    {0.192397, 0.104906, 0.0413031},
+    {0.0442615, 0.0646081, 0.00888876},
+    {0.121151, 0.0331668, 0.0145668},
+    {0.180327, 0.0752599, 0.0328029},
+    {0.0317981, 0.0121815, 0.00468755},
+    {0.0536794, 0.0476701, 0.0111867},
+}};
 
 std::vector<float> picture(const cli::LoadedScene& loaded, const char* seed) {
     const auto render = cli::make_render(loaded.scene.get(), "path_tracing");
@@ -53,26 +53,7 @@ std::vector<float> picture(const cli::LoadedScene& loaded, const char* seed) {
 TEST(Mitsuba, SeesTheSameCornellBox) {
     cli::LoadedScene loaded = cli::load_gltf(std::filesystem::path(TRIPTYCH_SCENES) / "cornell_mitsuba.glb", {}, 0);
     cli::complete_scene(loaded, kSide, kSide, 0);
-    const std::vector<float> a = picture(loaded, "1"), b = picture(loaded, "2");
-    double greatest = 0, whole[3] = {}, theirs[3] = {};
-    for (uint32_t row = 0; row < kBlocks; ++row)
-        for (uint32_t column = 0; column < kBlocks; ++column)
-            for (size_t c = 0; c < 3; ++c) {
-                double sum = 0, noise = 0;
-                for (uint32_t y = 0; y < kBlock; ++y)
-                    for (uint32_t x = 0; x < kBlock; ++x) {
-                        const size_t line = kSide - 1 - row * kBlock - y;  // ours count from below
-                        const size_t i = 4 * (line * kSide + column * kBlock + x) + c;
-                        sum += (a[i] + b[i]) / 2;
-                        noise += (a[i] - b[i]) * (a[i] - b[i]) / 4;
-                    }
-                const double pixels = kBlock * kBlock, expected = kMitsuba[row][column][c];
-                greatest = std::max(greatest, std::abs(sum - expected * pixels) / std::sqrt(noise));
-                whole[c] += sum / pixels / (kBlocks * kBlocks);
-                theirs[c] += expected / (kBlocks * kBlocks);
-            }
-    EXPECT_LT(greatest, 4) << "standard deviations, of 48 means";
-    for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(whole[c] / theirs[c], 1, 2e-3) << c;
+    trp_test::expect_block_means(picture(loaded, "1"), picture(loaded, "2"), kSide, kSide, kMitsuba, 2e-5);
 }
 
 }  // namespace
