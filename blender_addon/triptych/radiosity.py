@@ -13,7 +13,15 @@ from . import abi, core, data, settings
 from .as_rendered import export_as_rendered
 
 # What a solution does not depend on.
-_VIEW = ("radiosity.view", "radiosity.view_scale", "radiosity.mesh", "radiosity.smooth", "radiosity.ambient")
+_VIEW = (
+    "radiosity.view",
+    "radiosity.view_scale",
+    "radiosity.view_element",
+    "radiosity.legend",
+    "radiosity.mesh",
+    "radiosity.smooth",
+    "radiosity.ambient",
+)
 
 
 class Kept:

@@ -4,6 +4,8 @@
 
 #include "api/guard.h"
 #include "api/handles.h"
+#include "film/picture_file.h"
+#include "radiosity/polygon_factors.h"
 
 using namespace trp;
 
@@ -118,6 +120,19 @@ void check_count(size_t given, size_t needed, const char* what) {
     if (given != needed) fail(TRP_ERROR_ARGUMENT, "the buffer has {} {} where {} are needed", given, what, needed);
 }
 
+uint32_t leaf_of(const TrpRadiosity& radiosity, uint32_t element) {
+    if (element >= radiosity.leaves.size())
+        fail(TRP_ERROR_ARGUMENT, "there is no element {}; there are {}", element, radiosity.leaves.size());
+    return radiosity.leaves[element];
+}
+
+// The number that the ABI knows an element by; of one that was divided, and of none, TRP_NO_ELEMENT.
+uint32_t number_of(const TrpRadiosity& radiosity, uint32_t element) {
+    const auto at = std::lower_bound(radiosity.leaves.begin(), radiosity.leaves.end(), element);
+    if (at == radiosity.leaves.end() || *at != element) return TRP_NO_ELEMENT;
+    return static_cast<uint32_t>(at - radiosity.leaves.begin());
+}
+
 }  // namespace
 
 extern "C" {
@@ -189,6 +204,7 @@ TrpStatus trp_radiosity_info(TrpRadiosity* radiosity, TrpRadiosityInfo* info) {
         out.rays = statistics.rays;
         out.residual = statistics.residual;
         out.seconds = data.seconds();
+        out.projection_side = 2 * data.settings.radiosity.hemicube_resolution;
         if (data.has_elements()) {
             out.element_count = static_cast<uint32_t>(radiosity->leaves.size());
             const ElementVertices& vertices = data.vertices();
@@ -236,7 +252,14 @@ TrpStatus trp_radiosity_read(TrpRadiosity* radiosity, const char* values, float*
             read_at_vertices(data, view, buffer);
             return TRP_OK;
         }
-        std::string known = "vertex_radiosity, vertex_irradiance";
+        if (std::strcmp(values, "row_sum") == 0) {
+            check_count(float_count, radiosity->leaves.size(), "floats");
+            const std::vector<double> sums = data.row_sums();
+            if (sums.empty()) fail(TRP_ERROR_STATE, "the solver has no form factors to be summed");
+            for (const uint32_t leaf : radiosity->leaves) *buffer++ = static_cast<float>(sums[leaf]);
+            return TRP_OK;
+        }
+        std::string known = "vertex_radiosity, vertex_irradiance, row_sum";
         for (const Values& row : kValues) {
             known += std::string(", ") + row.name;
             if (std::strcmp(values, row.name) != 0) continue;
@@ -282,13 +305,63 @@ TrpStatus trp_radiosity_form_factors(TrpRadiosity* radiosity, uint32_t element, 
         Radiosity& data = with_elements(radiosity);
         check_pointer(buffer, "buffer");
         check_count(count, radiosity->leaves.size(), "numbers");
-        if (element >= count) fail(TRP_ERROR_ARGUMENT, "there is no element {}; there are {}", element, count);
         std::vector<Vec3d> row;
-        data.form_factors(radiosity->leaves[element], row);
+        data.form_factors(leaf_of(*radiosity, element), row);
         for (size_t k = 0; k < count; ++k) {
             const Vec3d& f = row[radiosity->leaves[k]];
             buffer[k] = (f.x + f.y + f.z) / 3;
         }
+        return TRP_OK;
+    });
+}
+
+TrpStatus trp_radiosity_projection(TrpRadiosity* radiosity, uint32_t element, uint32_t* seen, float* shares,
+                                   size_t count) {
+    return guard([&] {
+        Radiosity& data = with_elements(radiosity);
+        check_pointer(seen, "seen");
+        check_pointer(shares, "shares");
+        const size_t side = 2 * size_t{data.settings.radiosity.hemicube_resolution};
+        check_count(count, side * side, "pixels");
+        const ProjectionPicture picture = data.projection(leaf_of(*radiosity, element));
+        std::transform(picture.elements.begin(), picture.elements.end(), seen,
+                       [&](uint32_t leaf) { return number_of(*radiosity, leaf); });
+        std::copy(picture.shares.begin(), picture.shares.end(), shares);
+        return TRP_OK;
+    });
+}
+
+TrpStatus trp_radiosity_write_projection(TrpRadiosity* radiosity, uint32_t element, const char* path) {
+    return guard([&] {
+        Radiosity& data = with_elements(radiosity);
+        check_pointer(path, "path");
+        const uint32_t leaf = leaf_of(*radiosity, element);
+        std::vector<Vec3> reflectances;
+        for (const ElementLight& light : data.solution().light) reflectances.push_back(light.reflectance);
+        std::vector<float> numbers(data.elements().size(), -1.0f);
+        for (size_t k = 0; k < radiosity->leaves.size(); ++k) numbers[radiosity->leaves[k]] = static_cast<float>(k);
+        write_picture_file(draw_projection(data.projection(leaf), reflectances, numbers), path);
+        return TRP_OK;
+    });
+}
+
+TrpStatus trp_radiosity_outline(TrpRadiosity* radiosity, uint32_t element, uint32_t seen, double* corners,
+                                size_t corner_count, size_t* used, double* form_factor) {
+    return guard([&] {
+        Radiosity& data = with_elements(radiosity);
+        check_pointer(corners, "corners");
+        check_pointer(used, "used");
+        check_pointer(form_factor, "form_factor");
+        const ElementFrame frame = frame_of(data.elements(), leaf_of(*radiosity, element));
+        std::vector<Vec3d> polygon;
+        data.elements().corners(leaf_of(*radiosity, seen), polygon);
+        const std::vector<Vec3d> outline = project_polygon(frame, polygon);
+        if (outline.size() > corner_count)
+            fail(TRP_ERROR_ARGUMENT, "the buffer has {} corners where {} are needed", corner_count, outline.size());
+        for (const Vec3d& corner : outline)
+            for (int k = 0; k < 3; ++k) *corners++ = corner[k];
+        *used = outline.size();
+        *form_factor = point_to_polygon(Vec3d(frame.middle), Vec3d(frame.z), polygon);
         return TRP_OK;
     });
 }
@@ -302,18 +375,41 @@ TrpStatus trp_radiosity_link(TrpRadiosity* radiosity, uint64_t index, TrpRadiosi
             fail(TRP_ERROR_ARGUMENT, "there is no link {}; there are {}", index, radiosity->links.size());
         const ElementLink& of = radiosity->links[index];
         TrpRadiosityLink out{};
-        const auto number = [&](uint32_t node) {
-            const auto at = std::lower_bound(radiosity->leaves.begin(), radiosity->leaves.end(), node);
-            if (at == radiosity->leaves.end() || *at != node) return TRP_NO_ELEMENT;
-            return static_cast<uint32_t>(at - radiosity->leaves.begin());
-        };
-        out.receiver = number(of.receiver);
-        out.source = number(of.source);
+        out.receiver = number_of(*radiosity, of.receiver);
+        out.source = number_of(*radiosity, of.source);
         const Vec3d& origin = data.elements().snapshot().origin;
+        out.level = of.level;
         put(Vec3d(of.factor), out.factor);
         put(Vec3d(of.ends[1]) + origin, out.from);
         put(Vec3d(of.ends[0]) + origin, out.to);
         write_struct(link, out, "link");
+        return TRP_OK;
+    });
+}
+
+TrpStatus trp_radiosity_element_links(TrpRadiosity* radiosity, uint32_t element, uint64_t* links, size_t capacity,
+                                      size_t* count) {
+    return guard([&] {
+        Radiosity& data = with_elements(radiosity);
+        if (capacity > 0) check_pointer(links, "links");
+        check_pointer(count, "count");
+        const std::vector<uint64_t> numbers = data.links_to(leaf_of(*radiosity, element));
+        std::copy_n(numbers.begin(), std::min(capacity, numbers.size()), links);
+        *count = numbers.size();
+        return TRP_OK;
+    });
+}
+
+TrpStatus trp_radiosity_pick(TrpRadiosity* radiosity, const TrpRender* render, uint32_t x, uint32_t y,
+                             uint32_t* element) {
+    return guard([&] {
+        Radiosity& data = with_elements(radiosity);
+        check_pointer(render, "render");
+        check_pointer(element, "element");
+        const Window& film = render->window;
+        if (x >= film.width || y >= film.height)
+            fail(TRP_ERROR_ARGUMENT, "pixel ({}, {}) is not of a picture of {} x {}", x, y, film.width, film.height);
+        *element = number_of(*radiosity, element_at(*render->snapshot, film, data.elements(), x, y));
         return TRP_OK;
     });
 }

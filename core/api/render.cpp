@@ -9,6 +9,7 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "film/picture_file.h"
+#include "film/view.h"
 #include "radiosity/scene_hash.h"
 #include "raster/rasterizer.h"
 
@@ -248,6 +249,25 @@ TrpStatus trp_render_write(const TrpRender* render, const char* path) {
         check_idle(render);
         check_pointer(path, "path");
         write_picture_file(film_of(render), path);
+        return TRP_OK;
+    });
+}
+
+TrpStatus trp_render_project(const TrpRender* render, const float* positions, size_t count, float* film) {
+    return guard([&] {
+        check_idle(render);
+        check_pointer(positions, "positions");
+        check_pointer(film, "film");
+        const Snapshot& snapshot = *render->snapshot;
+        if (!snapshot.camera) fail(TRP_ERROR_STATE, "the scene has no camera");
+        const View view = make_view(*snapshot.camera, snapshot.origin, render->window.width, render->window.height);
+        for (size_t k = 0; k < count; ++k, positions += 3, film += 3) {
+            const Vec3 way(Vec3d(positions[0], positions[1], positions[2]) - snapshot.origin - Vec3d(view.position));
+            const float depth = -view.z.dot(way), over = view.perspective ? depth : 1;
+            film[0] = (view.x.dot(way) / over - view.left) / view.step_x;
+            film[1] = (view.y.dot(way) / over - view.bottom) / view.step_y;
+            film[2] = depth;
+        }
         return TRP_OK;
     });
 }

@@ -98,6 +98,14 @@ void Film::add_samples(uint32_t block_x, uint32_t block_y, uint32_t samples, uin
         if (packets >> p & 1) taken[p] += samples;
 }
 
+void Film::paint(uint32_t x, uint32_t y, const Vec3& color) {
+    const uint32_t block_x = x / kBlockSide, block_y = y / kBlockSide;
+    const uint32_t lane = lane_at(x % kBlockSide, y % kBlockSide);
+    const auto combined = block(block_x, block_y).combined();
+    const auto samples = static_cast<float>(std::max(samples_[block_index(block_x, block_y)][lane >> 4], 1u));
+    for (int c = 0; c < 4; ++c) combined[static_cast<size_t>(c)][lane] = samples * (c < 3 ? color[c] : 1);
+}
+
 BlockNoise& Film::noise(uint32_t block_x, uint32_t block_y) {
     std::unique_ptr<BlockNoise>& noise = noise_[block_index(block_x, block_y)];
     if (!noise) noise = std::make_unique<BlockNoise>();

@@ -103,6 +103,8 @@ class Film {
     // a time, and then say how many samples they have added, to which of its packets.
     BlockSums block(uint32_t block_x, uint32_t block_y);
     void add_samples(uint32_t block_x, uint32_t block_y, uint32_t samples, uint32_t packets = 0xFFFF);
+    // Makes a pixel of Combined this, opaque, whatever was added before.
+    void paint(uint32_t x, uint32_t y, const Vec3& color);
     // Of the block; made when it is first asked for.
     BlockNoise& noise(uint32_t block_x, uint32_t block_y);
     // The pixels of a pass, channels interleaved; sums are divided by the number of samples.

@@ -23,7 +23,8 @@ const char* const kHidden[] = {"none", "faint", "dashed", nullptr};
 const char* const kSolvers[] = {"hierarchical", "progressive", "matrix", nullptr};
 const char* const kFormFactors[] = {"analytic", "hemisphere", "hemicube", nullptr};
 const char* const kOrders[] = {"sorted", "unsorted", "gathering", nullptr};
-const char* const kRadiosityViews[] = {"shaded", "radiosity", "unshot", "false_color", nullptr};
+const char* const kRadiosityViews[] = {"shaded",      "radiosity",    "unshot", "false_color",
+                                       "illuminance", "form_factors", nullptr};
 
 constexpr const char kLineMethods[] = "wireframe hidden_line";
 
@@ -192,12 +193,21 @@ const SettingRow kSettings[] = {
      nullptr, "radiosity", "", [](Settings& s, const double* v) { s.radiosity.mesh = *v != 0; }},
     {TRP_TYPE_ENUM, "radiosity.view", "View",
      "What is shown: the picture, with textures; the radiosity of the elements alone; what of it is not yet shot; or "
-     "irradiance in false colours, from blue over green and yellow to red",
+     "in "
+     "false colours, from blue over green and yellow to red: irradiance; illuminance, which is the same in lux; or an "
+     "element's row of form factors",
      "", "shaded", 0, 0, kRadiosityViews, "radiosity", "",
      [](Settings& s, const double* v) { s.radiosity.view = static_cast<RadiositySettings::View>(*v); }},
     {TRP_TYPE_FLOAT, "radiosity.view_scale", "Scale",
-     "The irradiance that is red in false colours (683 lux are 1 W/m²); 0: the greatest there is", "W/m²", "0", 0, 1e9,
-     nullptr, "radiosity", "", [](Settings& s, const double* v) { s.radiosity.view_scale = static_cast<float>(*v); }},
+     "What is red in false colours: W/m², lux (683 are 1 W/m²) or a form factor, as the view has it; 0: the greatest "
+     "there is",
+     "", "0", 0, 1e9, nullptr, "radiosity", "",
+     [](Settings& s, const double* v) { s.radiosity.view_scale = static_cast<float>(*v); }},
+    {TRP_TYPE_BOOL, "radiosity.legend", "Legend", "The scale of false colours is drawn into the picture", "", "on", 0,
+     1, nullptr, "radiosity", "", [](Settings& s, const double* v) { s.radiosity.legend = *v != 0; }},
+    {TRP_TYPE_INT, "radiosity.view_element", "Element",
+     "The element whose row of form factors is shown; it is white itself", "", "0", 0, 2147483647, nullptr, "radiosity",
+     "", [](Settings& s, const double* v) { s.radiosity.view_element = static_cast<uint32_t>(*v); }},
     {TRP_TYPE_FLOAT, "lines.width", "Width", "Width of the lines", "pixels", "1.5", 0.01, 64, nullptr, kLineMethods, "",
      [](Settings& s, const double* v) { s.lines.width = static_cast<float>(*v); }},
     {TRP_TYPE_ENUM, "lines.color_by", "Colour by",

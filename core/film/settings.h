@@ -39,7 +39,7 @@ enum class RadiositySolver { hierarchical, progressive, matrix };
 enum class FormFactors { analytic, hemisphere, hemicube };
 struct RadiositySettings {
     enum class Order { sorted, unsorted, gathering };
-    enum class View { shaded, radiosity, unshot, false_color };
+    enum class View { shaded, radiosity, unshot, false_color, illuminance, form_factors };
     RadiositySolver solver = RadiositySolver::hierarchical;
     FormFactors form_factors = FormFactors::analytic;
     float element_size = 0;     // metres; 0: one element to a face, or where it is divided on its own, as needed
@@ -54,7 +54,9 @@ struct RadiositySettings {
     bool smooth = true;      // vertices are interpolated; else elements are shown flat
     bool mesh = false;       // the elements' sides are drawn
     View view = View::shaded;
-    float view_scale = 0;  // W/m², the top of the scale of colours; 0: the greatest
+    float view_scale = 0;       // the top of the scale of colours, in the view's unit; 0: the greatest
+    bool legend = true;         // the scale is drawn into the picture
+    uint32_t view_element = 0;  // whose row of form factors is shown
 };
 
 struct Settings {

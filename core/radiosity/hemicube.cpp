@@ -31,11 +31,6 @@ View face_view(const Elements& elements, uint32_t i, int face, uint32_t resoluti
     return view;
 }
 
-struct SeenPixel {
-    uint32_t x, y, element;
-    Vec3 weight;
-};
-
 struct FaceScratch {
     VisibilityTile tile;
     Points points;
@@ -45,8 +40,15 @@ struct FaceScratch {
     std::vector<LaneVec3> throughput;  // block by block
 };
 
-// All that the pixels of a face see, layer after layer where surfaces are seen through.
-void draw_face(const FormFactorJob& job, uint32_t i, int face, std::vector<SeenPixel>& out) {
+}  // namespace
+
+double delta_form_factor(int face, uint32_t resolution, uint32_t x, uint32_t y) {
+    const double step = 2.0 / resolution, u = (x + 0.5) * step - 1, v = (y + 0.5) * step - 1;
+    const double r2 = u * u + v * v + 1;
+    return (face == 0 ? 1 : v) * step * step / (std::numbers::pi * r2 * r2);
+}
+
+void draw_hemicube_face(const FormFactorJob& job, uint32_t i, int face, std::vector<HemicubePixel>& out) {
     const Elements& elements = job.elements;
     const Snapshot& snapshot = elements.snapshot();
     const uint32_t resolution = job.settings.hemicube_resolution, y0 = face == 0 ? 0 : resolution / 2;
@@ -102,21 +104,13 @@ void draw_face(const FormFactorJob& job, uint32_t i, int face, std::vector<SeenP
     }
 }
 
-}  // namespace
-
-double delta_form_factor(int face, uint32_t resolution, uint32_t x, uint32_t y) {
-    const double step = 2.0 / resolution, u = (x + 0.5) * step - 1, v = (y + 0.5) * step - 1;
-    const double r2 = u * u + v * v + 1;
-    return (face == 0 ? 1 : v) * step * step / (std::numbers::pi * r2 * r2);
-}
-
 void hemicube_row(const FormFactorJob& job, uint32_t i, uint32_t first, Vec3d* out) {
-    std::vector<SeenPixel> seen[kHemicubeFaces];
+    std::vector<HemicubePixel> seen[kHemicubeFaces];
     parallel_ranges(kHemicubeFaces, 1, [&](size_t begin, size_t end) {
-        for (size_t face = begin; face < end; ++face) draw_face(job, i, static_cast<int>(face), seen[face]);
+        for (size_t face = begin; face < end; ++face) draw_hemicube_face(job, i, static_cast<int>(face), seen[face]);
     });
     for (int face = 0; face < kHemicubeFaces; ++face)
-        for (const SeenPixel& pixel : seen[face])
+        for (const HemicubePixel& pixel : seen[face])
             if (pixel.element >= first)
                 out[pixel.element - first] +=
                     Vec3d(pixel.weight) * delta_form_factor(face, job.settings.hemicube_resolution, pixel.x, pixel.y);

@@ -11,6 +11,12 @@ namespace trp {
 void hemicube_row(const FormFactorJob& job, uint32_t i, uint32_t first, Vec3d* out);
 
 inline constexpr int kHemicubeFaces = 5;  // the top, then the sides towards +x, +y, −x and −y
+// What a pixel of a face sees, one layer after the other where surfaces are seen through.
+struct HemicubePixel {
+    uint32_t x, y, element;
+    Vec3 weight;
+};
+void draw_hemicube_face(const FormFactorJob& job, uint32_t i, int face, std::vector<HemicubePixel>& out);
 // Of the pixel (x, y) of a face of `resolution`² pixels; sides have their upper half alone, y ≥ resolution / 2.
 double delta_form_factor(int face, uint32_t resolution, uint32_t x, uint32_t y);
 

@@ -16,6 +16,7 @@
 #include "base/parallel.h"
 #include "radiosity/covered.h"
 #include "radiosity/linear.h"
+#include "radiosity/link_tree.h"
 #include "radiosity/links.h"
 #include "radiosity/mirror_rows.h"
 #include "radiosity/solver.h"
@@ -37,6 +38,14 @@ class HierarchicalSolver : public Solver {
   public:
     bool step(const SolverJob& job) override;
     void links(const Elements& elements, std::vector<ElementLink>& out) const override;
+    std::vector<uint64_t> links_to(const Elements& elements, uint32_t leaf) const override {
+        return links_to_leaf({elements, clusters_, links_}, leaf);
+    }
+    std::vector<double> row_sums(const Elements& elements) const override {
+        return link_sums({elements, clusters_, links_}, [&](uint32_t i) {
+            return std::array{element_nodes_[i].x, element_nodes_[i].y};
+        });
+    }
 
   private:
     struct Node {

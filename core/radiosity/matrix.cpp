@@ -26,6 +26,8 @@ class MatrixSolver : public Solver {
         return job.statistics.residual > kSolved;
     }
 
+    std::vector<double> row_sums(const Elements& elements) const override;
+
   private:
     bool assemble(const SolverJob& job);
     std::vector<double> sums_of(const std::vector<double>& matrix) const;
@@ -152,6 +154,18 @@ void MatrixSolver::sweep(const SolverJob& job) {
     });
     const double scale = std::max({greatest[0], greatest[1], greatest[2]});
     job.statistics.residual = scale > 0 ? std::max({residual[0], residual[1], residual[2]}) / scale : 0;
+}
+
+std::vector<double> MatrixSolver::row_sums(const Elements& elements) const {
+    if (matrices_.empty()) return {};
+    std::vector<double> out(count_, 0.0);
+    for (size_t i = 0; i < count_; ++i) {
+        for (const std::vector<double>& matrix : matrices_)
+            for (size_t j = 0; j < count_; ++j) out[i] += matrix[i * count_ + j];
+        const double area = elements[static_cast<uint32_t>(i)].exposed_area();
+        out[i] = area > 0 ? out[i] / (area * static_cast<double>(matrices_.size())) : 0;
+    }
+    return out;
 }
 
 }  // namespace

@@ -137,9 +137,35 @@ void Radiosity::form_factors(uint32_t element, std::vector<Vec3d>& out) {
     });
 }
 
+ProjectionPicture Radiosity::projection(uint32_t element) {
+    std::atomic<bool> cancelled{false};
+    ProjectionPicture out;
+    Arena arena(settings.threads);
+    arena.run([&] {
+        out = make_projection_picture({*elements_, settings.radiosity, settings.seed, &cancelled, &statistics_.rays},
+                                      element);
+    });
+    return out;
+}
+
 const ElementVertices& Radiosity::vertices() {
     if (!vertices_) vertices_ = std::make_shared<const ElementVertices>(*elements_);
     return *vertices_;
+}
+
+// Of the leaf of that number.
+void Radiosity::show_form_factors(uint32_t number, ShownSolution& out) {
+    uint32_t leaves = 0;
+    for (uint32_t i = 0; i < elements_->size(); ++i)
+        if ((*elements_)[i].leaf() && leaves++ == number) out.chosen = i;
+    if (out.chosen == kNoElement)
+        fail(TRP_ERROR_ARGUMENT, "radiosity.view_element: there is no element {}; there are {}", number, leaves);
+    std::vector<Vec3d> row;
+    form_factors(out.chosen, row);
+    for (size_t k = 0; k < row.size(); ++k) {
+        const auto mean = static_cast<float>((row[k].x + row[k].y + row[k].z) / 3);
+        out.leaves[k] = {mean, mean, mean};
+    }
 }
 
 std::shared_ptr<const ShownSolution> Radiosity::shown(const RadiositySettings& view) {
@@ -151,6 +177,10 @@ std::shared_ptr<const ShownSolution> Radiosity::shown(const RadiositySettings& v
     out->vertices = vertices_;
     out->elements = std::make_shared<const Elements>(*elements_);
     out->leaves.resize(elements_->size());
+    if (view.view == RadiositySettings::View::form_factors) {
+        show_form_factors(view.view_element, *out);
+        return out;
+    }
     for (uint32_t i = 0; i < elements_->size(); ++i) {
         if (!(*elements_)[i].leaf()) continue;
         Vec3d arriving = solution_.irradiance[i] + Vec3d(solution_.light[i].irradiance);
@@ -172,7 +202,22 @@ std::shared_ptr<const ShownSolution> Radiosity::shown(const RadiositySettings& v
 
 void Radiosity::links(std::vector<ElementLink>& out) const {
     out.clear();
-    if (solver_) solver_->links(*elements_, out);
+    if (!solver_) return;
+    solver_->links(*elements_, out);
+    std::vector<int32_t> levels(elements_->size(), 0);
+    for (uint32_t i = 0; i < elements_->size(); ++i)
+        for (uint32_t k = 0; k < 4 && !(*elements_)[i].leaf(); ++k)
+            levels[(*elements_)[i].first_child + k] = levels[i] + 1;
+    for (ElementLink& link : out)
+        if (link.receiver != kNoElement) link.level = levels[link.receiver];
+}
+
+std::vector<uint64_t> Radiosity::links_to(uint32_t leaf) const {
+    return solver_ ? solver_->links_to(*elements_, leaf) : std::vector<uint64_t>();
+}
+
+std::vector<double> Radiosity::row_sums() const {
+    return solver_ ? solver_->row_sums(*elements_) : std::vector<double>();
 }
 
 }  // namespace trp

@@ -5,6 +5,7 @@
 #include <mutex>
 
 #include "film/tiles.h"
+#include "radiosity/projection_picture.h"
 #include "radiosity/solver.h"
 #include "radiosity/view.h"
 
@@ -28,12 +29,18 @@ class Radiosity {
     // Where no step has been made yet; a row of form factors by colour, of elements in their order.
     void form_factors(uint32_t element, std::vector<Vec3d>& out);
 
+    // What an element sees, as radiosity.form_factors projects it.
+    ProjectionPicture projection(uint32_t element);
+
     const Elements& elements() const { return *elements_; }
     const Solution& solution() const { return solution_; }
     const SolverStatistics& statistics() const { return statistics_; }
     double seconds() const { return seconds_; }
     const std::vector<Warning>& warnings() const { return warnings_; }
     void links(std::vector<ElementLink>& out) const;
+    // As Solver has them.
+    std::vector<uint64_t> links_to(uint32_t leaf) const;
+    std::vector<double> row_sums() const;
     const ElementVertices& vertices();  // of the elements as they are; made on first use
     // As it is now, for renders, which hold it; null where there are no elements yet. `view`: the settings of the
     // render that shows it. Throws Error while another thread advances it.
@@ -43,6 +50,7 @@ class Radiosity {
     bool run(const RenderEvents& events, std::atomic<bool>& cancelled, const std::function<void()>& work);
     void make_elements(std::atomic<bool>& cancelled);
     void warn_of_clamped();
+    void show_form_factors(uint32_t number, ShownSolution& out);
 
     std::shared_ptr<const Snapshot> snapshot_;
     std::shared_ptr<Elements> elements_;

@@ -57,6 +57,7 @@ struct ElementLink {
     uint32_t receiver, source;  // elements; kNoElement: a group of them
     Vec3 factor;                // irradiance at the receiver for a radiosity of 1
     Vec3 ends[2];               // middles, relative to the origin
+    int32_t level = -1;         // how often the receiver's facet was divided; −1: a group
 };
 
 class Solver {
@@ -65,6 +66,10 @@ class Solver {
     // One step, in the current arena. Returns whether there is more to do.
     virtual bool step(const SolverJob& job) = 0;
     virtual void links(const Elements&, std::vector<ElementLink>&) const {}
+    // Of those, by number, what brings light to a leaf: links to it, and to what it is a part of.
+    virtual std::vector<uint64_t> links_to(const Elements&, uint32_t /*leaf*/) const { return {}; }
+    // Of each leaf, the sum of its form factors as the solver has them; empty where it has none.
+    virtual std::vector<double> row_sums(const Elements&) const { return {}; }
 };
 
 std::unique_ptr<Solver> make_matrix_solver();

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "film/view.h"
+#include "radiosity/element_rays.h"
+#include "radiosity/legend.h"
 #include "raster/rasterizer.h"
 
 namespace trp {
@@ -11,14 +14,14 @@ namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
 
-// Blue, cyan, green, yellow and red in equal steps.
-Vec3 false_color(float share) {
-    static constexpr float kStops[5][3] = {{0, 0, 1}, {0, 1, 1}, {0, 1, 0}, {1, 1, 0}, {1, 0, 0}};
-    const float at = 4 * std::clamp(share, 0.0f, 1.0f);
-    const int step = std::min(static_cast<int>(at), 3);
-    Vec3 out;
-    for (int c = 0; c < 3; ++c) out[c] = std::lerp(kStops[step][c], kStops[step + 1][c], at - static_cast<float>(step));
-    return out;
+// What a view in false colours counts in; W/m² to one of it.
+struct Unit {
+    const char* name;
+    float per_watt;
+};
+Unit unit_of(RadiositySettings::View view) {
+    using View = RadiositySettings::View;
+    return view == View::illuminance ? Unit{"lux", 683} : view == View::form_factors ? Unit{"F", 1} : Unit{"W/m²", 1};
 }
 
 // How near a place lies to a side of its element, in pixels: the footprint says what a pixel is there.
@@ -57,10 +60,15 @@ bool radiosity_view(RenderJob& job, const RenderEvents& events) {
     const ShownSolution& solution = *job.solution;
     const RadiositySettings& settings = job.settings.radiosity;
     const Vec3 shift(job.snapshot->origin - solution.elements->snapshot().origin);
-    float scale = settings.view_scale;
+    using View = RadiositySettings::View;
+    const bool false_colors = settings.view >= View::false_color;
+    // The elements' own, where each has a form factor.
+    const bool smooth = settings.smooth && settings.view != View::form_factors;
+    const Unit unit = unit_of(settings.view);
+    float scale = settings.view_scale / unit.per_watt;
     if (!(scale > 0))
         for (const Vec3& value : solution.leaves) scale = std::max(scale, luminance(value));
-    return draw_radiance(
+    const bool whole = draw_radiance(
         job, events, "radiosity", [&](const Points& points, const Coefficients& coefficients, LaneVec3& radiance) {
             for (int i = 0; i < kBatch; ++i) {
                 radiance.set(i, {0, 0, 0});
@@ -69,14 +77,16 @@ bool radiosity_view(RenderJob& job, const RenderEvents& events) {
                                                            points.b2[i], points.behind[i] != 0);
                 Vec3 value(0, 0, 0);
                 if (place.element != kNoElement)
-                    value = settings.smooth ? solution.vertices->interpolate(*solution.elements, place,
-                                                                             solution.at_vertices, solution.leaves)
-                                            : solution.leaves[place.element];
+                    value = smooth ? solution.vertices->interpolate(*solution.elements, place, solution.at_vertices,
+                                                                    solution.leaves)
+                                   : solution.leaves[place.element];
                 Vec3 shown = value / kPi;
-                if (settings.view == RadiositySettings::View::shaded)
+                if (settings.view == View::shaded)
                     shown = coefficients.emission.get(i) + coefficients.diffuse.get(i) * shown;
-                else if (settings.view == RadiositySettings::View::false_color)
+                else if (false_colors)
                     shown = false_color(scale > 0 ? luminance(value) / scale : 0);
+                if (false_colors && solution.chosen != kNoElement && place.element == solution.chosen)
+                    shown = {1, 1, 1};
                 if (settings.mesh && place.element != kNoElement) {
                     const float from_side = pixels_from_side(solution, place, shift, points, i);
                     shown *= std::clamp(from_side - 0.5f, 0.0f, 1.0f);
@@ -84,6 +94,31 @@ bool radiosity_view(RenderJob& job, const RenderEvents& events) {
                 radiance.set(i, shown);
             }
         });
+    if (!whole || !false_colors || !settings.legend) return whole;
+    // The legend is a tile more.
+    TrpTile tile{};
+    tile.struct_size = sizeof tile;
+    if (!draw_legend(*job.film, scale * unit.per_watt, unit.name, tile)) return true;
+    return !events.tile || events.tile(tile);
+}
+
+uint32_t element_at(const Snapshot& snapshot, const Window& window, const Elements& elements, uint32_t x, uint32_t y) {
+    if (!snapshot.camera) fail(TRP_ERROR_STATE, "the scene has no camera to look from");
+    const View view = make_view(*snapshot.camera, snapshot.origin, window.width, window.height);
+    const Vec3 on_film = view.x * (view.left + (static_cast<float>(x) + 0.5f) * view.step_x) +
+                         view.y * (view.bottom + (static_cast<float>(y) + 0.5f) * view.step_y);
+    const Vec3 direction = view.perspective ? (on_film - view.z).normalized() : -view.z,
+               origin = view.perspective ? view.position : view.position + on_film;
+    const Vec3 shift(snapshot.origin - elements.snapshot().origin);
+    std::vector<ElementRay> rays = {
+        {origin + shift + direction * (view.clip_start / -view.z.dot(direction)), direction}};
+    std::vector<ElementHit> hits;
+    std::make_unique<ElementTracer>(elements)->trace(rays, hits);
+    uint32_t out = kNoElement;
+    float most = 0;
+    for (const ElementHit& hit : hits)
+        if (hit.element != kNoElement && luminance(hit.weight) > most) most = luminance(hit.weight), out = hit.element;
+    return out;
 }
 
 }  // namespace trp

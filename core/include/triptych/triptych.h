@@ -505,6 +505,11 @@ TRP_API TrpStatus trp_render_read(const TrpRender* render, const char* pass, uin
  * ViewLayer.Pass.C as Blender and Nuke do, data window = the render's window; or .png, Combined, 8-bit sRGB. */
 TRP_API TrpStatus trp_render_write(const TrpRender* render, const char* path);
 
+/* Where points of the world lie in the picture that the camera gives: `positions` has 3 numbers to a point; `film`
+ * becomes 3: x and y in pixels from the bottom left, and the depth before the camera in metres, negative behind it,
+ * where x and y mean nothing. The render need not have run, but must not be running. */
+TRP_API TrpStatus trp_render_project(const TrpRender* render, const float* positions, size_t count, float* film);
+
 #define TRP_NO_VERTEX 0xFFFFFFFFu
 /* How scan-line interpolation (raster.interpolation = scan_line) makes the value of a pixel's centre: down the sides of
  * the polygon that is seen there, A = alpha I1 + (1 - alpha) I2 and B = beta I3 + (1 - beta) I4, and across the scan
@@ -608,6 +613,7 @@ typedef struct TrpRadiosityInfo {
     double power[3];   /* that leaves them, W */
     double unshot[3];  /* of the progressive solver, W */
     double seconds;    /* wall time so far */
+    uint32_t projection_side; /* pixels along a side of what trp_radiosity_projection gives */
 } TrpRadiosityInfo;
 TRP_API TrpStatus trp_radiosity_info(TrpRadiosity* radiosity, TrpRadiosityInfo* info);
 /* Warnings of its making: a reflectance of 1 and above, a scene without surfaces. Strings as in trp_scene_warning. */
@@ -621,6 +627,8 @@ TRP_API TrpStatus trp_radiosity_warning(const TrpRadiosity* radiosity, uint32_t 
  *   centre, normal                            3: world space
  *   area                                      1: m²
  *   instance, face                            1: the id of the object, and the face of its mesh
+ *   row_sum                                   1: of the solver's form factors, 1 where no light can leave the scene; of
+ *                                             the matrix and the hierarchical solver, after their first step
  * and of all vertices: vertex_position, vertex_normal (world space), vertex_radiosity, vertex_irradiance, 3 each. */
 TRP_API TrpStatus trp_radiosity_read(TrpRadiosity* radiosity, const char* values, float* buffer, size_t float_count);
 /* The elements' polygons: element_count + 1 offsets into corner_count vertices, counter-clockwise about the normal. The
@@ -631,15 +639,43 @@ TRP_API TrpStatus trp_radiosity_polygons(TrpRadiosity* radiosity, uint32_t* offs
  * other; `count` is the number of elements. Of colours that are tinted on the way, their mean. Needs elements. */
 TRP_API TrpStatus trp_radiosity_form_factors(TrpRadiosity* radiosity, uint32_t element, double* buffer, size_t count);
 
+/* What an element sees from its middle, as pixels of a square, projection_side² of them. Where radiosity.form_factors is
+ * "hemicube": its five faces unfolded into a cross, the top in the middle; else Nusselt's analog: all that is seen, on
+ * the unit hemisphere and from there straight down on its base circle, of whose area an element covers its form factor.
+ * Looked at from outside, down on the element. `seen`: the element in each pixel, through glass the one that counts for
+ * most; or TRP_NO_ELEMENT. `shares`: what each pixel is of the form factors; 0 outside the projection. */
+TRP_API TrpStatus trp_radiosity_projection(TrpRadiosity* radiosity, uint32_t element, uint32_t* seen, float* shares,
+                                           size_t count);
+/* Draws that into a picture: elements by their reflectance, each in a shade of its own. `path` ends in .png or .exr,
+ * which has the two arrays as passes, too: Element (-1: none) and FormFactor. */
+TRP_API TrpStatus trp_radiosity_write_projection(TrpRadiosity* radiosity, uint32_t element, const char* path);
+/* The outline of element `seen`, itself projected to the unit hemisphere about the middle of `element` and cut at its
+ * horizon: up to `corner_count` unit vectors of 3 numbers, joined by great circles, counter-clockwise from outside, with
+ * x and y as the pixels have them and z along the normal; twice the corners of its polygon are enough. `used`: how many
+ * there are; 0 where its front does not face the element. `form_factor`: the share of the base circle's area within,
+ * which is the form factor from the middle with nothing between. */
+TRP_API TrpStatus trp_radiosity_outline(TrpRadiosity* radiosity, uint32_t element, uint32_t seen, double* corners,
+                                        size_t corner_count, size_t* used, double* form_factor);
+
 typedef struct TrpRadiosityLink {
     uint32_t struct_size;
     uint32_t receiver, source;     /* elements; TRP_NO_ELEMENT: a group of them, or an element that was divided */
     float factor[3];               /* irradiance at the receiver for a radiosity of 1 at the source */
     float from[3], to[3];          /* the middles of source and receiver, world space */
+    int32_t level;                 /* how often the receiver's face was divided; -1: a group of elements */
 } TrpRadiosityLink;
 #define TRP_NO_ELEMENT 0xFFFFFFFFu
 /* Link `index`, from 0 to TrpRadiosityInfo.links, of the hierarchical solver. */
 TRP_API TrpStatus trp_radiosity_link(TrpRadiosity* radiosity, uint64_t index, TrpRadiosityLink* link);
+
+/* Those that bring light to an element: links to itself, and to what it is a part of. The first `capacity` of their
+ * numbers go into `links`, which may be null where that is 0; `count` is how many there are. */
+TRP_API TrpStatus trp_radiosity_element_links(TrpRadiosity* radiosity, uint32_t element, uint64_t* links,
+                                              size_t capacity, size_t* count);
+/* The element that is seen in the middle of a pixel (from the bottom left) of a render's film; TRP_NO_ELEMENT where there
+ * is none. */
+TRP_API TrpStatus trp_radiosity_pick(TrpRadiosity* radiosity, const TrpRender* render, uint32_t x, uint32_t y,
+                                     uint32_t* element);
 
 /* Has a render of the method "radiosity" show the solution as it is now, instead of finding one. TRP_ERROR_STATE where
  * the render's scene has other surfaces, or for another method. */
