@@ -90,7 +90,7 @@ double LinkEvaluator::factor_at(const Place& place, const Places& sources, NodeI
         if (polygon_of_ != source) elements_.corners(polygon_of_ = source, polygon_);
         return point_to_polygon(Vec3d(place.point), Vec3d(place.normal), polygon_);
     }
-    const float area = clusters_.of(source).area;
+    const float area = clusters_.of(source).area / kLinkPoints;  // that a point stands for
     double sum = 0;
     for (const Place& of : sources) {
         const Vec3 way = of.point - place.point;
@@ -99,7 +99,7 @@ double LinkEvaluator::factor_at(const Place& place, const Places& sources, NodeI
         // Never more than a half space full of it.
         sum += static_cast<double>(cosines) / (std::numbers::pi * static_cast<double>(d2) + static_cast<double>(area));
     }
-    return sum * static_cast<double>(area) / kLinkPoints;
+    return sum * static_cast<double>(area);
 }
 
 // A bound whatever way the surfaces of a cluster are turned: a source that fills as much of the sky as it can.

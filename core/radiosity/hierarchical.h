@@ -1,0 +1,107 @@
+// Hierarchical radiosity (Hanrahan, Salzman and Aupperle, "A Rapid Hierarchical Radiosity Algorithm", 1991): light goes
+// over links between nodes of quad-trees, each as high up as the tolerance allows, and clusters above them.
+//
+// Light is linear over elements (Linear). A link's error is what no line follows of its irradiance over the receiver
+// and of the source's radiosity within it, for clusters what differs between points of theirs, and what chance may have
+// done; times the receiver's reflectance. The squares of all errors that come to an element are added up, and over the
+// scene weighed by area. That is an estimate of the solution's error, in W/m², and each step refines the links that have
+// more than an equal share of what the tolerance allows, along with the elements on which lamps shine unevenly, until it
+// is below the tolerance. As light is gathered between the steps, links are refined for what they carry then
+// (multigridding).
+#pragma once
+
+#include <array>
+
+#include "radiosity/linear.h"
+#include "radiosity/link_tree.h"
+#include "radiosity/mirror_rows.h"
+#include "radiosity/solver.h"
+
+namespace trp {
+
+inline constexpr double kUnevenness = 0.5;  // of a lamp's light over an element, what is left as an error
+inline constexpr size_t kLinkGrain = 1024;  // links that a thread takes at a time
+// Links and elements; then the solution is left as it is, and its residual says how good. Four times the elements that
+// it begins with, where that is more.
+inline constexpr size_t kMostLinks = 1 << 19;
+
+class HierarchicalSolver : public Solver {
+  public:
+    bool step(const SolverJob& job) override;
+    void links(const Elements& elements, std::vector<ElementLink>& out) const override;
+    std::vector<uint64_t> links_to(const Elements& elements, uint32_t leaf) const override {
+        return links_to_leaf({elements, clusters_, links_}, leaf);
+    }
+    std::vector<double> row_sums(const Elements& elements) const override {
+        return link_sums({elements, clusters_, links_}, [&](uint32_t i) {
+            return std::array{element_nodes_[i].x, element_nodes_[i].y};
+        });
+    }
+
+  private:
+    struct Node {
+        Linear radiosity, gathered;
+        PlaneCell cell;         // of an element
+        float x = 0, y = 0;     // from the middle of the element above, along the facet's axes
+        float variance = 0;     // of the brightness of its parts, from the linear one
+        float reflectance = 0;  // the mean, of the brightest colour
+        float error = 0;        // of what its leaves give, the mean of its squares
+        // Of what its own links bring: the squares of what is wrong by chance, and what is wrong the same way.
+        float own_error = 0, own_coherent = 0;
+        float coherent = 0;  // with that of the nodes above
+    };
+
+    bool begin(const SolverJob& job);
+    std::vector<Link> first_links(const Elements& elements) const;
+    void evaluate(const SolverJob& job, std::vector<Link>& links) const;
+    void solve(const SolverJob& job);
+    void gather();
+    // Of nodes above, as Node has them.
+    struct ErrorAbove {
+        double squares = 0, coherent = 0;
+    };
+    void push_pull(const SolverJob& job, NodeId id, const Linear& above, ErrorAbove error);
+    void set_leaf(const SolverJob& job, uint32_t leaf, Linear arriving, double error);
+    void add_nodes(const SolverJob& job);
+    // Irradiance that a link may be wrong by: for what no line follows over the receiver and within the source, and for
+    // what of the source is hidden, which is likely darker than the rest, so that many links err the same way.
+    struct LinkError {
+        double over_receiver, within_source, coherent, chance;
+        double squares() const {
+            return (over_receiver + within_source) * (over_receiver + within_source) + chance * chance;
+        }
+    };
+    LinkError link_error(const Link& link) const;
+    float allowed(const Link& link) const;
+    double measure(const SolverJob& job);
+    bool refine(const SolverJob& job);
+    bool is_full() const { return links_.size() + element_nodes_.size() > most_; }
+    float extent(const Elements& elements, NodeId id) const;
+    struct Children {
+        NodeId ids[4];
+        uint32_t count;
+    };
+    Children children(const Elements& elements, NodeId id) const;  // not of leaves
+    bool may_divide(const Elements& elements, uint32_t element) const {
+        return elements.facet_of(element).shape != Facet::Shape::polygon && elements[element].area > 4 * least_area_;
+    }
+    Node& node(NodeId id) { return is_cluster(id) ? cluster_nodes_[id & ~kClusterBit] : element_nodes_[id]; }
+    const Node& node(NodeId id) const {
+        return is_cluster(id) ? cluster_nodes_[id & ~kClusterBit] : element_nodes_[id];
+    }
+    size_t place(NodeId id) const { return is_cluster(id) ? id & ~kClusterBit : clusters_.clusters.size() + id; }
+
+    ElementClusters clusters_;
+    std::vector<Node> cluster_nodes_, element_nodes_;
+    std::vector<NodeId> tops_;        // of the hierarchy
+    std::vector<Link> links_;         // by receiver
+    std::vector<size_t> first_link_;  // by place of the receiver, and the end
+    MirrorRows mirrors_;
+    std::vector<Vec3d> mirrored_;  // irradiance by mirrors, by element
+    float least_area_ = 0;
+    size_t most_ = kMostLinks;
+    bool begun_ = false;
+    double tolerance_ = 0;
+};
+
+}  // namespace trp

@@ -1,0 +1,151 @@
+// What the hierarchy's links are wrong by, and the refining of those to which the error is owed.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/parallel.h"
+#include "radiosity/covered.h"
+#include "radiosity/hierarchical.h"
+
+namespace trp {
+namespace {
+
+constexpr double kCoherent = 0.5;  // of what differs within a source, what is wrong the same way where half is hidden
+constexpr double kChance = 0.125;  // of the tolerance, what chance may do to what a link brings
+
+// Of shares of the squared error, the least of those to be refined, so that the rest is half of what is allowed
+// (Dörfler, "A Convergent Adaptive Algorithm for Poisson's Equation", 1996).
+double least_share(std::vector<double> shares, double allowed) {
+    std::sort(shares.begin(), shares.end());
+    double sum = 0;
+    for (const double share : shares)
+        if ((sum += share) > allowed / 2) return share;
+    return std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+HierarchicalSolver::LinkError HierarchicalSolver::link_error(const Link& link) const {
+    const Node& source = node(link.source);
+    const double within = luminance(link.factor()) * std::sqrt(static_cast<double>(source.variance));
+    return {static_cast<double>(link.spread) * brightness(source.radiosity.mean), within,
+            kCoherent * within * static_cast<double>(link.hidden),
+            static_cast<double>(link.chance) * brightness(source.radiosity.mean)};
+}
+
+// What chance may do to the factor of a link, or of those that take its place.
+float HierarchicalSolver::allowed(const Link& link) const {
+    const double carried =
+        brightness(node(link.source).radiosity.mean) * static_cast<double>(node(link.receiver).reflectance);
+    return static_cast<float>(kChance * tolerance_ / std::max(carried, 1e-30));
+}
+
+// The estimated mean square error of the solution, with the errors of all nodes.
+double HierarchicalSolver::measure(const SolverJob& job) {
+    for (auto* nodes : {&cluster_nodes_, &element_nodes_})
+        for (Node& n : *nodes) n.own_error = n.own_coherent = 0;
+    for (const Link& link : links_) {
+        const LinkError error = link_error(link);
+        node(link.receiver).own_error += static_cast<float>(error.squares());
+        node(link.receiver).own_coherent += static_cast<float>(error.coherent);
+    }
+    for (const NodeId top : tops_) push_pull(job, top, {}, {});
+    double sum = 0, area = 0, power = 0;
+    for (uint32_t i = 0; i < job.elements.size(); ++i) {
+        if (!job.elements[i].leaf()) continue;
+        const double a = job.elements[i].area;
+        sum += a * static_cast<double>(element_nodes_[i].error);
+        area += a;
+        power += a * brightness(element_nodes_[i].radiosity.mean);
+    }
+    tolerance_ = job.settings.radiosity.tolerance;
+    if (!(tolerance_ > 0)) tolerance_ = area > 0 ? 0.01 * power / area : 0;
+    return area > 0 ? sum / area : 0;
+}
+
+// The links and leaves that the error is mostly owed to. Returns whether there were any.
+bool HierarchicalSolver::refine(const SolverJob& job) {
+    Elements& elements = job.elements;
+    const auto area_of = [&](NodeId id) { return static_cast<double>(clusters_.area(elements, id)); };
+    const uint32_t old_size = elements.size();
+    // What to do about a link: divide its receiver or its source, whichever its error is owed to and can be divided.
+    enum class Part : uint8_t { none, receiver, source };
+    const auto part_of = [&](const Link& link, const LinkError& error) {
+        const bool receiver = is_cluster(link.receiver), source = is_cluster(link.source);
+        if (receiver || source)
+            return receiver && (!source || extent(elements, link.receiver) >= extent(elements, link.source))
+                       ? Part::receiver
+                       : Part::source;
+        const bool receivers = !elements[link.receiver].leaf() || may_divide(elements, link.receiver),
+                   sources = !elements[link.source].leaf();
+        if (!receivers && !sources) return Part::none;
+        return receivers && (!sources || error.over_receiver >= error.within_source + error.coherent + error.chance)
+                   ? Part::receiver
+                   : Part::source;
+    };
+    std::vector<Part> parts(links_.size(), Part::none);
+    std::vector<double> shares(links_.size() + old_size, 0.0);
+    parallel_ranges(links_.size(), kLinkGrain, [&](size_t begin, size_t end) {
+        for (size_t l = begin; l < end; ++l) {
+            const Link& link = links_[l];
+            const Node& to = node(link.receiver);
+            const LinkError error = link_error(link);
+            parts[l] = part_of(link, error);
+            if (parts[l] != Part::none)
+                shares[l] = (error.squares() + error.coherent * static_cast<double>(to.coherent)) *
+                            static_cast<double>(to.reflectance * to.reflectance) * area_of(link.receiver);
+        }
+    });
+    double* const uneven = &shares[links_.size()];
+    for (uint32_t i = 0; i < old_size; ++i)
+        if (elements[i].leaf() && may_divide(elements, i)) {
+            const double error =
+                kUnevenness * static_cast<double>(job.solution.light[i].unevenness * element_nodes_[i].reflectance);
+            uneven[i] = error * error * area_of(i);
+        }
+    const double least = least_share(shares, tolerance_ * tolerance_ * elements.area());
+
+    // Elements are divided in their order and in that of the links, by one thread: their numbers are always the same.
+    std::vector<Link> kept, fresh;
+    kept.reserve(links_.size());
+    for (uint32_t i = 0; i < old_size; ++i)
+        if (uneven[i] >= least) elements.divide(i);
+    for (size_t l = 0; l < links_.size(); ++l) {
+        const Link& link = links_[l];
+        if (!(shares[l] >= least)) {
+            kept.push_back(link);
+            continue;
+        }
+        const bool by_receiver = parts[l] == Part::receiver;
+        const NodeId split = by_receiver ? link.receiver : link.source;
+        if (!is_cluster(split) && elements[split].leaf()) elements.divide(split);
+        const Children below = children(elements, split);
+        for (const NodeId part : std::span(below.ids, below.count)) {
+            Link next{by_receiver ? part : link.receiver, by_receiver ? link.source : part};
+            next.agreed = link.agreed / static_cast<float>(below.count);
+            next.allowed = allowed(link);
+            if (clusters_.may_see(elements, next.receiver, next.source)) fresh.push_back(next);
+        }
+    }
+    if (kept.size() == links_.size() && elements.size() == old_size) return false;
+    job.solution.light.resize(elements.size());
+    job.solution.irradiance.resize(elements.size());
+    find_covered(elements, job.lighting(), old_size);
+    light_elements(job.lighting(), old_size, std::span(job.solution.light).subspan(old_size));
+    evaluate(job, fresh);
+    mirrors_.add(job.lighting(), old_size, job.solution.light);
+    if (job.cancelled) {  // as if it had not begun
+        elements.merge(old_size);
+        mirrors_.merge(old_size);
+        job.solution.light.resize(old_size);
+        job.solution.irradiance.resize(old_size);
+        return false;
+    }
+    job.solution.slopes.resize(elements.size());
+    add_nodes(job);
+    kept.insert(kept.end(), fresh.begin(), fresh.end());
+    links_.swap(kept);
+    return true;
+}
+
+}  // namespace trp
