@@ -81,6 +81,19 @@ TEST(RadiosityInspection, RowsOfAClosedRoomSumToOne) {
     EXPECT_EQ(trp_radiosity_read(progressive, "row_sum", &none, progressive.info().element_count), TRP_ERROR_STATE);
 }
 
+TEST(RadiosityInspection, VerticesOfAFurnaceHaveTheRadiosityOfAll) {
+    Scene scene;
+    scene.object(inwards(box({0, 0, 0}, {1, 1, 1})), scene.material([](TrpMaterialDesc& d) {
+        d.diffuse = {{0.5f, 0.5f, 0.5f}, TRP_NO_NODE};
+        const auto radiance = static_cast<float>(1 / kPi);
+        d.emission = {{radiance, radiance, radiance}, TRP_NO_NODE};
+    }));
+    Solution solution(scene, kMatrix);
+    solution.solve();
+    for (const float radiosity : solution.read("vertex_radiosity", 3)) EXPECT_NEAR(radiosity, 2, 1e-4);
+    for (const float irradiance : solution.read("vertex_irradiance", 3)) EXPECT_NEAR(irradiance, 2, 1e-4);
+}
+
 TEST(RadiosityInspection, AnElementsLinksAreItsOwnAndThoseOfItsWholes) {
     Room room;
     Solution solution(room, kHierarchical);
