@@ -1,4 +1,5 @@
-// `triptych form-factors`: the matrix of a scene's form factors, or rows of it. SPDX-License-Identifier: Apache-2.0
+// `triptych form-factors`: the matrix of a scene's form factors, or rows of it, and pictures of one.
+// SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <memory>
 
 #include "commands.h"
+#include "projection_svg.h"
 #include "radiosity_job.h"
 #include "report.h"
 
@@ -15,7 +17,8 @@ namespace triptych::cli {
 namespace {
 
 struct Options : PictureJob {
-    std::string output, rows_text;
+    std::string output, rows_text, picture;
+    uint32_t element = 0;
 };
 
 bool ends_in(const std::string& text, const char* end) {
@@ -59,11 +62,34 @@ std::vector<uint32_t> chosen_rows(const std::string& text, uint32_t count) {
     return rows;
 }
 
+void write_rows(const Options& options, TrpRadiosity* radiosity, uint32_t count) {
+    const std::vector<uint32_t> rows = chosen_rows(options.rows_text, count);
+    std::vector<double> values(rows.size() * count);
+    for (size_t k = 0; k < rows.size(); ++k)
+        check(trp_radiosity_form_factors(radiosity, rows[k], values.data() + k * count, count));
+    write_file(options.output,
+               ends_in(options.output, ".npy") ? npy(values, rows.size(), count) : csv(values, std::max(count, 1u)));
+}
+
+void write_picture(const Options& options, TrpRadiosity* radiosity, uint32_t count) {
+    if (options.element >= count)
+        throw UsageError(fmt::format("--element: there is no element {}; there are {}", options.element, count));
+    if (ends_in(options.picture, ".svg"))
+        write_projection_svg(radiosity, options.element, options.picture);
+    else
+        check(trp_radiosity_write_projection(radiosity, options.element, options.picture.c_str()));
+}
+
 int run(Options options) {
-    if (!ends_in(options.output, ".npy") && !ends_in(options.output, ".csv"))
+    if (options.output.empty() && options.picture.empty()) throw UsageError("--output or --picture is required");
+    if (!options.output.empty() && !ends_in(options.output, ".npy") && !ends_in(options.output, ".csv"))
         throw UsageError(fmt::format("--output: '{}' does not end in .npy or .csv", options.output));
+    if (!options.picture.empty() && !ends_in(options.picture, ".png") && !ends_in(options.picture, ".exr") &&
+        !ends_in(options.picture, ".svg"))
+        throw UsageError(fmt::format("--picture: '{}' does not end in .png, .exr or .svg", options.picture));
     check_picture(options);
-    check_writable(options.output);
+    for (const std::string* path : {&options.output, &options.picture})
+        if (!path->empty()) check_writable(*path);
     InterruptGuard guard;
     LoadedPicture picture = load_picture(options);
     const RenderHandle render = make_picture(options, picture);
@@ -72,27 +98,29 @@ int run(Options options) {
     callbacks.check_call(trp_radiosity_prepare(radiosity.get(), callbacks.get()));
     print_radiosity_warnings(options, radiosity.get());
     const uint32_t count = info_of(radiosity.get()).element_count;
-    const std::vector<uint32_t> rows = chosen_rows(options.rows_text, count);
-    std::vector<double> values(rows.size() * count);
-    for (size_t k = 0; k < rows.size(); ++k)
-        check(trp_radiosity_form_factors(radiosity.get(), rows[k], values.data() + k * count, count));
     guard.begin_writing();
-    write_file(options.output,
-               ends_in(options.output, ".npy") ? npy(values, rows.size(), count) : csv(values, std::max(count, 1u)));
+    if (!options.output.empty()) write_rows(options, radiosity.get(), count);
+    if (!options.picture.empty()) write_picture(options, radiosity.get(), count);
     return 0;
 }
 
 }  // namespace
 
 Command add_form_factors_command(CLI::App& program) {
-    CLI::App* app = program.add_subcommand("form-factors", "Write the form factors between a scene's elements");
+    CLI::App* app = program.add_subcommand("form-factors", "Write or draw the form factors between a scene's elements");
     const auto options = std::make_shared<Options>();
     options->method = "radiosity";
     // Elements as other solvers than the hierarchical one have them, which begins with undivided faces.
     options->set = {"radiosity.solver=matrix"};
     add_picture_options(*app, *options);
-    app->add_option("--output", options->output, ".npy, doubles, or .csv: a row for each element")->required();
+    app->add_option("--output", options->output, ".npy, doubles, or .csv: a row for each element");
     app->add_option("--rows", options->rows_text, "0,7,12,…: these rows alone");
+    app->add_option(
+        "--picture", options->picture,
+        ".png, .exr: what an element sees, on the unfolded faces of a hemicube where "
+        "radiosity.form_factors is hemicube, else projected to the hemisphere and its base circle; .svg: the "
+        "elements themselves, projected so");
+    app->add_option("--element", options->element, "The number of the row that is drawn")->capture_default_str();
     return {app, [options] { return run(*options); }};
 }
 

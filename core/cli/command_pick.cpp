@@ -89,7 +89,7 @@ Command add_pick_command(CLI::App& program) {
     const auto options = std::make_shared<Options>();
     options->method = "gouraud";
     add_picture_options(*app, *options);
-    add_pixel_option(*app, *options);
+    add_pixel_option(*app, *options)->required();
     app->add_option("--method", options->method, "gouraud: radiance; phong: normals")->capture_default_str();
     app->add_flag("--json", options->as_json, "As JSON");
     return {app, [options] { return run(*options); }};

@@ -6,8 +6,12 @@
 #include <charconv>
 #include <filesystem>
 #include <memory>
+#include <numeric>
+#include <optional>
 
+#include "bake_glb.h"
 #include "commands.h"
+#include "links_svg.h"
 #include "radiosity_job.h"
 #include "report.h"
 #include "statistics.h"
@@ -16,8 +20,10 @@ namespace triptych::cli {
 namespace {
 
 struct Options : PictureJob {
-    std::string snapshots_text, output, stats;
+    std::string snapshots_text, output, stats, links, bake;
     std::vector<uint32_t> snapshots;
+    int32_t level = no_level;
+    static constexpr int32_t no_level = -2;
 };
 
 // "1,2,24,100", in the order of the steps.
@@ -31,9 +37,46 @@ std::vector<uint32_t> parse_snapshots(const std::string& text) {
     return out;
 }
 
+// That is seen in the job's pixel.
+uint32_t picked_element(const Options& options, const LoadedPicture& picture, const TrpRender* render,
+                        TrpRadiosity* radiosity) {
+    uint32_t element = 0;
+    check(trp_radiosity_pick(radiosity, render, options.pixel[0], picture.height - 1 - options.pixel[1], &element));
+    if (element == TRP_NO_ELEMENT)
+        throw Error(fmt::format("--pixel: no element is seen at {},{}", options.pixel[0], options.pixel[1]));
+    return element;
+}
+
+// Draws the links that were asked for over the elements.
+void draw_links(const Options& options, const LoadedPicture& picture, TrpRender* render, TrpRadiosity* radiosity) {
+    std::vector<uint64_t> numbers(info_of(radiosity).links);
+    std::iota(numbers.begin(), numbers.end(), uint64_t{0});
+    if (options.has_pixel) {
+        size_t count = 0;
+        check(trp_radiosity_element_links(radiosity, picked_element(options, picture, render, radiosity),
+                                          numbers.data(), numbers.size(), &count));
+        numbers.resize(count);
+    }
+    std::vector<TrpRadiosityLink> links;
+    for (const uint64_t number : numbers) {
+        TrpRadiosityLink link{};
+        link.struct_size = sizeof link;
+        check(trp_radiosity_link(radiosity, number, &link));
+        if (options.level == Options::no_level || link.level == options.level) links.push_back(link);
+    }
+    check(trp_render_set(render, "radiosity.mesh", "on"));
+    check(trp_render_set_radiosity(render, radiosity));
+    check(trp_render_run(render, nullptr));
+    write_links_svg(render, picture.width, picture.height, links, options.links);
+}
+
 // Draws the solution as it is into DIR/NAME.exr and .png.
-void draw(const Options& options, const RenderHandle& render, const RadiosityHandle& radiosity, const std::string& name,
-          InterruptGuard& guard) {
+void draw(const Options& options, const LoadedPicture& picture, const RenderHandle& render,
+          const RadiosityHandle& radiosity, const std::string& name, InterruptGuard& guard) {
+    if (options.has_pixel) {
+        const uint32_t element = picked_element(options, picture, render.get(), radiosity.get());
+        check(trp_render_set(render.get(), "radiosity.view_element", std::to_string(element).c_str()));
+    }
     check(trp_render_set_radiosity(render.get(), radiosity.get()));
     check(trp_render_run(render.get(), nullptr));
     guard.begin_writing();
@@ -49,7 +92,10 @@ int run(Options options) {
         options.snapshots = parse_snapshots(options.snapshots_text);
     }
     check_picture(options);
-    if (!options.stats.empty()) check_writable(options.stats);
+    if (!options.bake.empty() && std::filesystem::u8path(options.bake).extension() != ".glb")
+        throw UsageError(fmt::format("--bake: '{}' does not end in .glb", options.bake));
+    for (const std::string* path : {&options.stats, &options.links, &options.bake})
+        if (!path->empty()) check_writable(*path);
     if (!options.output.empty()) {
         std::error_code error;
         std::filesystem::create_directories(std::filesystem::u8path(options.output), error);
@@ -57,24 +103,33 @@ int run(Options options) {
     }
     InterruptGuard guard;
     LoadedPicture picture = load_picture(options);
+    if (options.has_pixel) check_pixel(options, picture);
     const RenderHandle render = make_picture(options, picture);
     const RadiosityHandle radiosity = make_radiosity(options, picture);
     SolveCallbacks callbacks(guard, options.quiet);
     callbacks.check_call(trp_radiosity_prepare(radiosity.get(), callbacks.get()));
     print_radiosity_warnings(options, radiosity.get());
+    if (options.has_pixel) picked_element(options, picture, render.get(), radiosity.get());  // or fails early
     for (const uint32_t step : options.snapshots) {
         const uint32_t done = info_of(radiosity.get()).iterations;
         if (step > done) callbacks.check_call(trp_radiosity_step(radiosity.get(), step - done, callbacks.get()));
-        draw(options, render, radiosity, fmt::format("iteration_{:04}", step), guard);
+        draw(options, picture, render, radiosity, fmt::format("iteration_{:04}", step), guard);
     }
     if (options.snapshots.empty()) {
         callbacks.check_call(trp_radiosity_solve(radiosity.get(), callbacks.get()));
-        if (!options.output.empty()) draw(options, render, radiosity, "radiosity", guard);
+        if (!options.output.empty()) draw(options, picture, render, radiosity, "radiosity", guard);
     }
     const TrpRadiosityInfo info = info_of(radiosity.get());
-    if (!options.quiet)
+    const std::optional<RowSums> row_sums = row_sums_of(radiosity.get());
+    if (!options.quiet) {
         fmt::print("{} elements, {} links, {} steps, {} rays, {:.3g} s, residual {:.3g}{}\n", info.element_count,
                    info.links, info.iterations, info.rays, info.seconds, info.residual, info.solved ? ", solved" : "");
+        if (row_sums)
+            fmt::print("row sums {:.4g} to {:.4g}, mean {:.4g}\n", row_sums->least, row_sums->greatest, row_sums->mean);
+        if (options.has_pixel)
+            fmt::print("element {} at pixel {},{}\n", picked_element(options, picture, render.get(), radiosity.get()),
+                       options.pixel[0], options.pixel[1]);
+    }
     if (!options.stats.empty()) {
         CommandCosts costs;
         costs.method = options.method;
@@ -92,10 +147,14 @@ int run(Options options) {
         costs.render.links = info.links;
         costs.render.iterations = info.iterations;
         costs.render.residual = info.residual;
+        costs.radiosity = &info;
+        costs.row_sums = row_sums ? &*row_sums : nullptr;
         costs.width = picture.width;
         costs.height = picture.height;
         write_file(options.stats, statistics_json(costs));
     }
+    if (!options.bake.empty()) write_baked_glb(options.scene, radiosity.get(), options.bake);
+    if (!options.links.empty()) draw_links(options, picture, render.get(), radiosity.get());
     return 0;
 }
 
@@ -112,6 +171,17 @@ Command add_radiosity_command(CLI::App& program) {
                     "DIR: the folder of the pictures; without snapshots, radiosity.exr and "
                     ".png of the whole solution");
     app->add_option("--stats", options->stats, "Write what it cost into this file, as JSON");
+    app->add_option("--bake", options->bake,
+                    "FILE.glb: the scene as a mesh of its elements with their radiosity as vertex colours");
+    add_pixel_option(*app, *options)
+        ->description("X,Y, from the top left: the element seen there, for --links and the view form_factors");
+    app->add_option(
+        "--links", options->links,
+        "FILE.svg: the hierarchical solver's links over the elements; with --pixel, those that bring light to "
+        "its element");
+    app->add_option("--level", options->level,
+                    "Of the links, those whose receivers were divided so often; -1: groups of elements")
+        ->check(CLI::Range(-1, 32));
     return {app, [options] { return run(*options); }};
 }
 

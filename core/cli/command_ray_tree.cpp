@@ -85,7 +85,7 @@ Command add_ray_tree_command(CLI::App& program) {
     const auto options = std::make_shared<Options>();
     options->method = "ray_tracing";
     add_picture_options(*app, *options);
-    add_pixel_option(*app, *options);
+    add_pixel_option(*app, *options)->required();
     app->add_flag("--json", options->as_json, "As JSON");
     app->add_option("--svg", options->svg, "Draw the tree into a file");
     return {app, [options] { return run(*options); }};

@@ -56,16 +56,16 @@ void add_picture_options(CLI::App& app, PictureJob& job) {
     app.add_flag("--quiet", job.quiet, "No progress and no warnings");
 }
 
-void add_pixel_option(CLI::App& app, PictureJob& job) {
-    app.add_option_function<std::string>(
-           "--pixel",
-           [&job](const std::string& text) {
-               if (!parse_numbers(text, job.pixel, 2)) {
-                   throw UsageError(fmt::format("--pixel: '{}' is not X,Y", text));
-               }
-           },
-           "X,Y of the pixel, from the top left")
-        ->required();
+CLI::Option* add_pixel_option(CLI::App& app, PictureJob& job) {
+    return app.add_option_function<std::string>(
+        "--pixel",
+        [&job](const std::string& text) {
+            if (!parse_numbers(text, job.pixel, 2)) {
+                throw UsageError(fmt::format("--pixel: '{}' is not X,Y", text));
+            }
+            job.has_pixel = true;
+        },
+        "X,Y of the pixel, from the top left");
 }
 
 void check_pixel(const PictureJob& job, const LoadedPicture& picture) {

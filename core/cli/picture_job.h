@@ -20,6 +20,7 @@ struct PictureJob {
     std::vector<std::pair<std::string, std::string>> settings;
     std::string threads;
     uint32_t pixel[2] = {};  // from the top left, where a command asks for one
+    bool has_pixel = false;
     bool quiet = false;
 
     uint32_t thread_count() const;
@@ -28,8 +29,8 @@ struct PictureJob {
 // Adds SCENE and the options for the rest to a command.
 void add_picture_options(CLI::App& app, PictureJob& job);
 
-// Adds --pixel, which is required.
-void add_pixel_option(CLI::App& app, PictureJob& job);
+// Adds --pixel.
+CLI::Option* add_pixel_option(CLI::App& app, PictureJob& job);
 
 // Splits the texts, and checks method, names and values. Throws a UsageError for what is wrong in the call.
 void check_picture(PictureJob& job);

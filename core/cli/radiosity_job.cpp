@@ -1,6 +1,9 @@
 // What the commands about radiosity have in common. SPDX-License-Identifier: Apache-2.0
 #include "radiosity_job.h"
 
+#include <algorithm>
+#include <numeric>
+
 #include "report.h"
 
 namespace triptych::cli {
@@ -36,6 +39,15 @@ TrpRadiosityInfo info_of(TrpRadiosity* radiosity) {
     info.struct_size = sizeof info;
     check(trp_radiosity_info(radiosity, &info));
     return info;
+}
+
+std::optional<RowSums> row_sums_of(TrpRadiosity* radiosity) {
+    std::vector<float> sums(info_of(radiosity).element_count);
+    if (sums.empty() || trp_radiosity_read(radiosity, "row_sum", sums.data(), sums.size()) != TRP_OK)
+        return std::nullopt;
+    const auto [least, greatest] = std::minmax_element(sums.begin(), sums.end());
+    return RowSums{*least, std::accumulate(sums.begin(), sums.end(), 0.0) / static_cast<double>(sums.size()),
+                   *greatest};
 }
 
 void print_radiosity_warnings(const PictureJob& job, TrpRadiosity* radiosity) {

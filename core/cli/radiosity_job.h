@@ -1,9 +1,12 @@
 // What the commands about radiosity have in common. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "interrupt.h"
 #include "picture_job.h"
 #include "report.h"
+#include "statistics.h"
 
 namespace triptych::cli {
 
@@ -25,6 +28,9 @@ class SolveCallbacks {
 };
 
 TrpRadiosityInfo info_of(TrpRadiosity* radiosity);
+
+// Of its elements; none where its solver has no form factors of all.
+std::optional<RowSums> row_sums_of(TrpRadiosity* radiosity);
 
 // Says the warnings of its making.
 void print_radiosity_warnings(const PictureJob& job, TrpRadiosity* radiosity);

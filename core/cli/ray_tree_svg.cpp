@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "report.h"
+#include "svg.h"
 
 namespace triptych::cli {
 namespace {
@@ -47,39 +48,8 @@ std::vector<Place> lay_out(const RayTree& tree, double& width, double& height) {
     return places;
 }
 
-std::string escaped(const std::string& text) {
-    std::string out;
-    for (const char c : one_line(text)) {
-        switch (c) {
-            case '&':
-                out += "&amp;";
-                break;
-            case '<':
-                out += "&lt;";
-                break;
-            case '>':
-                out += "&gt;";
-                break;
-            default:
-                out += c;
-        }
-    }
-    return out;
-}
-
 std::string triple(const float (&v)[3]) {
     return fmt::format("{:.3g} {:.3g} {:.3g}", v[0], v[1], v[2]);
-}
-
-// Linear radiance as a colour of the page.
-std::string page_color(const float (&v)[3]) {
-    std::string out = "#";
-    for (const float c : v) {
-        const double x = std::clamp(std::isfinite(c) ? static_cast<double>(c) : 0.0, 0.0, 1.0);
-        const double s = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
-        out += fmt::format("{:02x}", static_cast<int>(std::lround(255 * s)));
-    }
-    return out;
 }
 
 std::string text(double x, double y, const std::string& words, const char* style = "") {

@@ -8,7 +8,7 @@ namespace triptych::cli {
 std::string statistics_json(const CommandCosts& costs) {
     using nlohmann::ordered_json;
     const TrpStatistics& render = costs.render;
-    const ordered_json json = {
+    ordered_json json = {
         {"method", costs.method},
         {"seconds",
          {{"load", costs.load_seconds},
@@ -37,6 +37,13 @@ std::string statistics_json(const CommandCosts& costs) {
         {"scene_bytes",
          {{"mesh", costs.scene.mesh_bytes}, {"held", costs.scene.held_bytes}, {"bvh", costs.scene.bvh_bytes}}},
     };
+    if (const TrpRadiosityInfo* info = costs.radiosity) {
+        json["radiosity"] = {{"solved", info->solved != 0}, {"vertices", info->vertex_count}, {"area", info->area},
+                             {"power", info->power},        {"unshot", info->unshot},         {"row_sums", nullptr}};
+        if (const RowSums* sums = costs.row_sums)
+            json["radiosity"]["row_sums"] = {
+                {"least", sums->least}, {"mean", sums->mean}, {"greatest", sums->greatest}};
+    }
     return json.dump(2) + "\n";
 }
 

@@ -8,12 +8,19 @@
 
 namespace triptych::cli {
 
+// Of elements' form factors.
+struct RowSums {
+    double least = 0, mean = 0, greatest = 0;
+};
+
 struct CommandCosts {
     std::string method;
     double load_seconds = 0.0, commit_seconds = 0.0, write_seconds = 0.0;
     TrpSceneInfo scene{};
     TrpStatistics render{};
     uint32_t width = 0, height = 0;
+    const TrpRadiosityInfo* radiosity = nullptr;  // of a command that solves one
+    const RowSums* row_sums = nullptr;            // where its solver knows them
 };
 
 std::string statistics_json(const CommandCosts& costs);

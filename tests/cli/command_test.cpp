@@ -278,6 +278,32 @@ TEST_F(Command, RadiosityLeavesItsSnapshots) {
     expect_error(with({"--snapshots", "1"}), 2, "--snapshots: needs --output");
 }
 
+TEST_F(Command, RadiosityIsLookedInto) {
+    const std::string links = (folder / "links.svg").string(), stats = (folder / "stats.json").string();
+    const auto solve = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), {"radiosity", scene, "--width", "32", "--height", "24"});
+        return run(more);
+    };
+    const Outcome outcome = solve({"--links", links, "--stats", stats, "--pixel", "16,12", "--set",
+                                   "radiosity.view=form_factors", "--output", (folder / "pictures").string()});
+    ASSERT_EQ(outcome.code, 0) << outcome.error;
+    EXPECT_NE(outcome.out.find(" at pixel 16,12\n"), std::string::npos) << outcome.out;
+    EXPECT_NE(outcome.out.find("row sums 0 to 0"), std::string::npos) << "two triangles of one plane: " << outcome.out;
+    EXPECT_NE(text_of(links).find("href=\"data:image/png;base64,iVBORw0KGgo"), std::string::npos);
+    EXPECT_FALSE(std::filesystem::exists(links + ".png"));
+    const json costs = json::parse(text_of(stats));
+    for (const char* key : {"elements", "links", "iterations", "residual"}) EXPECT_TRUE(costs.contains(key)) << key;
+    EXPECT_TRUE(costs["rays"].contains("gather"));
+    EXPECT_EQ(costs["radiosity"]["row_sums"]["greatest"], 0);
+    EXPECT_EQ(costs["radiosity"]["solved"], true);
+    expect_error(solve({"--quiet", "--pixel", "32,3"}), 2, "outside the picture");
+    expect_error(solve({"--quiet", "--links", (folder / "no/links.svg").string()}), 1, "no folder");
+    expect_error(solve({"--quiet", "--level", "-2"}), 2, "--level");
+    expect_error(solve({"--quiet", "--bake", "baked.gltf"}), 2, "--bake: 'baked.gltf' does not end in .glb");
+    ASSERT_EQ(solve({"--quiet", "--stats", stats, "--set", "radiosity.solver=progressive"}).code, 0);
+    EXPECT_TRUE(json::parse(text_of(stats))["radiosity"]["row_sums"].is_null());
+}
+
 TEST_F(Command, FormFactorsAreAnArray) {
     const std::string array = (folder / "rows.npy").string(), text = (folder / "rows.csv").string();
     EXPECT_EQ(run({"form-factors", scene, "--output", array, "--quiet"}).code, 0);
@@ -288,6 +314,21 @@ TEST_F(Command, FormFactorsAreAnArray) {
     expect_error(run({"form-factors", scene, "--output", text, "--rows", "2", "--quiet"}), 2,
                  "--rows: there is no element 2; there are 2");
     expect_error(run({"form-factors", scene, "--output", "rows.txt"}), 2, "--output: 'rows.txt'");
+}
+
+TEST_F(Command, FormFactorsAreDrawn) {
+    const auto draw = [&](const std::string& name, std::vector<std::string> more = {}) {
+        more.insert(more.begin(), {"form-factors", scene, "--quiet", "--set", "radiosity.hemicube_resolution=32",
+                                   "--picture", (folder / name).string()});
+        return run(more);
+    };
+    for (const char* name : {"circle.png", "circle.exr", "circle.svg"}) EXPECT_EQ(draw(name).code, 0) << name;
+    EXPECT_EQ(draw("cross.png", {"--set", "radiosity.form_factors=hemicube", "--element", "1"}).code, 0);
+    EXPECT_EQ(text_of(folder / "cross.png").substr(1, 3), "PNG");
+    EXPECT_NE(text_of(folder / "circle.svg").find("What element 0 sees"), std::string::npos);
+    expect_error(draw("circle.jpg"), 2, "circle.jpg' does not end in .png, .exr or .svg");
+    expect_error(draw("circle.png", {"--element", "2"}), 2, "--element: there is no element 2; there are 2");
+    expect_error(run({"form-factors", scene}), 2, "--output or --picture");
 }
 
 TEST_F(Command, Tables) {
