@@ -47,7 +47,7 @@ struct RadiositySettings {
     uint32_t iterations = 0;    // at most; 0: until it is solved
     float tolerance = 0;        // W/m²; 0: a hundredth of the mean radiosity
     uint32_t rays = 1024;       // from each element
-    uint32_t hemicube_resolution = 128;  // pixels; a multiple of 32
+    uint32_t hemicube_resolution = 256;  // pixels; a multiple of 32
     Order order = Order::sorted;
     bool ambient = false;    // light that is not yet shot is shown as if it came from everywhere
     uint32_t memory = 2048;  // MiB, at most, for a matrix

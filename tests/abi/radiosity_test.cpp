@@ -26,6 +26,7 @@ TEST(RadiosityProjections, RefuseMisuse) {
     TwoSquares scene;
     Solution solution(scene, small());
     ASSERT_EQ(solution.info().projection_side, 64u);
+    EXPECT_EQ(Solution(scene, {}).info().projection_side, 2 * 256u) << "as the table of settings has it";
     std::vector<uint32_t> seen(64 * 64);
     std::vector<float> shares(64 * 64);
     double corners[24], factor = 0;
