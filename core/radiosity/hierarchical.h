@@ -4,9 +4,9 @@
 // Light is linear over elements (Linear). A link's error is what no line follows of its irradiance over the receiver
 // and of the source's radiosity within it, for clusters what differs between points of theirs, and what chance may have
 // done; times the receiver's reflectance. The squares of all errors that come to an element are added up, and over the
-// scene weighed by area. That is an estimate of the solution's error, in W/m², and each step refines the links that have
-// more than an equal share of what the tolerance allows, along with the elements on which lamps shine unevenly, until it
-// is below the tolerance. As light is gathered between the steps, links are refined for what they carry then
+// scene weighed by area. That is an estimate of the solution's error, in W/m², and each step refines the links that
+// have more than an equal share of what the tolerance allows, along with the elements on which lamps shine unevenly,
+// until it is below the tolerance. As light is gathered between the steps, links are refined for what they carry then
 // (multigridding).
 #pragma once
 
