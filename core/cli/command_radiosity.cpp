@@ -108,7 +108,7 @@ int run(Options options) {
     const RadiosityHandle radiosity = make_radiosity(options, picture);
     SolveCallbacks callbacks(guard, options.quiet);
     callbacks.check_call(trp_radiosity_prepare(radiosity.get(), callbacks.get()));
-    print_radiosity_warnings(options, radiosity.get());
+    const uint32_t told = print_radiosity_warnings(options, radiosity.get());
     if (options.has_pixel) picked_element(options, picture, render.get(), radiosity.get());  // or fails early
     for (const uint32_t step : options.snapshots) {
         const uint32_t done = info_of(radiosity.get()).iterations;
@@ -119,6 +119,7 @@ int run(Options options) {
         callbacks.check_call(trp_radiosity_solve(radiosity.get(), callbacks.get()));
         if (!options.output.empty()) draw(options, picture, render, radiosity, "radiosity", guard);
     }
+    print_radiosity_warnings(options, radiosity.get(), told);
     const TrpRadiosityInfo info = info_of(radiosity.get());
     const std::optional<RowSums> row_sums = row_sums_of(radiosity.get());
     if (!options.quiet) {

@@ -50,16 +50,17 @@ std::optional<RowSums> row_sums_of(TrpRadiosity* radiosity) {
                    *greatest};
 }
 
-void print_radiosity_warnings(const PictureJob& job, TrpRadiosity* radiosity) {
-    if (job.quiet) return;
+uint32_t print_radiosity_warnings(const PictureJob& job, TrpRadiosity* radiosity, uint32_t first) {
+    const uint32_t count = trp_radiosity_warning_count(radiosity);
     std::vector<std::string> lines;
-    for (uint32_t k = 0; k < trp_radiosity_warning_count(radiosity); ++k) {
+    for (uint32_t k = first; k < count && !job.quiet; ++k) {
         TrpWarning warning{};
         warning.struct_size = sizeof warning;
         check(trp_radiosity_warning(radiosity, k, &warning));
         lines.emplace_back(warning.text);
     }
     print_warnings(lines);
+    return count;
 }
 
 }  // namespace triptych::cli

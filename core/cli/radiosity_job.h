@@ -32,7 +32,7 @@ TrpRadiosityInfo info_of(TrpRadiosity* radiosity);
 // Of its elements; none where its solver has no form factors of all.
 std::optional<RowSums> row_sums_of(TrpRadiosity* radiosity);
 
-// Says the warnings of its making.
-void print_radiosity_warnings(const PictureJob& job, TrpRadiosity* radiosity);
+// Says its warnings from number `first` on; returns how many there are.
+uint32_t print_radiosity_warnings(const PictureJob& job, TrpRadiosity* radiosity, uint32_t first = 0);
 
 }  // namespace triptych::cli

@@ -87,6 +87,7 @@ bool HierarchicalSolver::step(const SolverJob& job) {
     ++job.statistics.steps;
     job.statistics.links = links_.size();
     job.statistics.residual = std::sqrt(measure(job));
+    job.statistics.wanted = tolerance_;
     return job.statistics.residual > tolerance_ && !is_full();
 }
 

@@ -124,6 +124,12 @@ bool Radiosity::advance(uint32_t steps, const RenderEvents& events, std::atomic<
             solved_ = !solver_->step(job) && !cancelled;
         }
         if (elements_ && elements_->size() != before) vertices_.reset();  // they depend on nothing else
+        if (solved_ && statistics_.wanted > 0 && statistics_.residual > statistics_.wanted)
+            warnings_.push_back(
+                {TRP_WARNING_MESH, TRP_NO_ID,
+                 fmt::format("radiosity ended at its limit of elements and links, {} of them: its estimated error is "
+                             "{:.3g} W/m², and {:.3g} was asked for",
+                             elements_->size() + statistics_.links, statistics_.residual, statistics_.wanted)});
     });
 }
 

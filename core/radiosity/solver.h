@@ -38,6 +38,7 @@ struct SolverStatistics {
     uint64_t links = 0;
     uint32_t steps = 0;
     double residual = 0;  // of the equation, or the estimated error, or the share that is unshot: as the solver says
+    double wanted = 0;    // the residual that was asked for, where the solver may have to end before
 };
 
 struct SolverJob {

@@ -616,7 +616,8 @@ typedef struct TrpRadiosityInfo {
     uint32_t projection_side; /* pixels along a side of what trp_radiosity_projection gives */
 } TrpRadiosityInfo;
 TRP_API TrpStatus trp_radiosity_info(TrpRadiosity* radiosity, TrpRadiosityInfo* info);
-/* Warnings of its making: a reflectance of 1 and above, a scene without surfaces. Strings as in trp_scene_warning. */
+/* Warnings of its making, a reflectance of 1 and above or a scene without surfaces, and of its end: a limit that was met
+ * before the tolerance. Strings as in trp_scene_warning. */
 TRP_API uint32_t trp_radiosity_warning_count(const TrpRadiosity* radiosity);
 TRP_API TrpStatus trp_radiosity_warning(const TrpRadiosity* radiosity, uint32_t index, TrpWarning* warning);
 
