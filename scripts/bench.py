@@ -30,6 +30,7 @@ class Benchmark:
     program: str  # of bin/ in the build, or of tests/benchmarks/, where it ends in .py
     scene: str  # empty: it makes its own
     arguments: list[str] = field(default_factory=list)
+    python: str = "bpy"  # the environment in build/ that programs in Python run in
 
     def chosen(self, only: list[str]) -> bool:
         return not only or any(name == o or name.startswith(o + ".") for name in self.names for o in only)
@@ -91,6 +92,10 @@ BENCHMARKS = [
         "cornell_box",
         ["--tolerance", "0.008", "--size", "192", "--error-goal", "0.01", "--seconds-goal", "2"],
     ),
+    Benchmark(["radiosity.links"], "links_bench.py", ""),
+    Benchmark(["radiosity.form_factors"], "form_factors_bench.py", "", python="viewfactor"),
+    Benchmark(["radiosity.shot"], "shot_bench", "cornell_box", ["--goal", "1.5"]),
+    Benchmark(["radiosity.view"], "view_bench", "cornell_box", ["--goal", "1.1"]),
     Benchmark(["edit", "cancel"], "edit_bench", "gallery", ["--edit-goal", "0.1", "--cancel-goal", "0.1"]),
 ]
 
@@ -127,7 +132,8 @@ def rows_of(benchmark: Benchmark, directory: Path, threads: int, repeats: int) -
     command = [str(directory / "bin" / benchmark.program)]
     if benchmark.program.endswith(".py"):
         # Blender as a module, which is built nowhere and stands in the one place.
-        python, program = ROOT / "build/bpy/bin/python", ROOT / "tests/benchmarks" / benchmark.program
+        python = ROOT / "build" / benchmark.python / "bin/python"
+        program = ROOT / "tests/benchmarks" / benchmark.program
         command = [str(python), str(program), "--build", str(directory)]
     command += [str(scene_file(benchmark.scene))] if benchmark.scene else []
     command += [*benchmark.arguments, "--threads", str(threads), "--repeats", str(repeats)]

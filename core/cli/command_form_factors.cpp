@@ -87,6 +87,8 @@ int run(Options options) {
     if (!options.picture.empty() && !ends_in(options.picture, ".png") && !ends_in(options.picture, ".exr") &&
         !ends_in(options.picture, ".svg"))
         throw UsageError(fmt::format("--picture: '{}' does not end in .png, .exr or .svg", options.picture));
+    // Elements as other solvers than the hierarchical one have them, which begins with undivided faces.
+    options.set.insert(options.set.begin(), "radiosity.solver=matrix");
     check_picture(options);
     for (const std::string* path : {&options.output, &options.picture})
         if (!path->empty()) check_writable(*path);
@@ -110,8 +112,6 @@ Command add_form_factors_command(CLI::App& program) {
     CLI::App* app = program.add_subcommand("form-factors", "Write or draw the form factors between a scene's elements");
     const auto options = std::make_shared<Options>();
     options->method = "radiosity";
-    // Elements as other solvers than the hierarchical one have them, which begins with undivided faces.
-    options->set = {"radiosity.solver=matrix"};
     add_picture_options(*app, *options);
     app->add_option("--output", options->output, ".npy, doubles, or .csv: a row for each element");
     app->add_option("--rows", options->rows_text, "0,7,12,…: these rows alone");

@@ -309,6 +309,9 @@ TEST_F(Command, FormFactorsAreAnArray) {
     EXPECT_EQ(run({"form-factors", scene, "--output", array, "--quiet"}).code, 0);
     EXPECT_EQ(text_of(array).substr(0, 6), "\x93NUMPY");
     EXPECT_NE(text_of(array).find("'shape': (2, 2)"), std::string::npos);
+    const std::string half = "radiosity.element_size=0.6";
+    EXPECT_EQ(run({"form-factors", scene, "--output", array, "--quiet", "--set", half}).code, 0);
+    EXPECT_NE(text_of(array).find("'shape': (18, 18)"), std::string::npos);  // a setting leaves the solver as it was
     EXPECT_EQ(run({"form-factors", scene, "--output", text, "--rows", "1", "--quiet"}).code, 0);
     EXPECT_EQ(text_of(text), "0,0\n");  // two triangles of one plane
     expect_error(run({"form-factors", scene, "--output", text, "--rows", "2", "--quiet"}), 2,
