@@ -332,6 +332,7 @@ class RadiosityInfo(c.Structure):
         ("power", f64 * 3),
         ("unshot", f64 * 3),
         ("seconds", f64),
+        ("projection_side", u32),
     ]
 
 
@@ -341,6 +342,7 @@ class RadiosityLink(c.Structure):
         ("receiver", u32),
         ("source", u32),
         *((name, f32 * 3) for name in ("factor", "from", "to")),
+        ("level", i32),
     ]
 
 
