@@ -19,12 +19,13 @@ uint16_t open_places(const Elements& elements, const LightingJob& job, uint32_t 
     for (uint32_t k = 0; k < kBatch; ++k) indices[k] = round + kRounds * (k % 16);
     random_pair_of(keys, indices, 0, u, v);
     const Vec3 normal = elements.normal(element);
+    const Hemisphere hemisphere(normal);
     rays.clear();
     hits.clear();
     for (uint32_t k = 0; k < 16; ++k) {
         if (!(left >> k & 1)) continue;
         const Vec3 p = elements.place_point(element, k);
-        rays.push_back({p + normal * clearance(p), cosine_direction(normal, u[k], v[k]), k});
+        rays.push_back({p + normal * clearance(p), hemisphere.direction(u[k], v[k]), k});
     }
     *job.rays += tracer.trace(rays, hits);
     uint16_t open = 0;

@@ -21,10 +21,11 @@ bool has_mirrors(const Elements& elements) {
                        [&](const Facet& facet) { return (flags[facet.material] & kMirrors) != 0; });
 }
 
-Vec3 cosine_direction(const Vec3& normal, float u, float v) {
-    const Vec3 x = perpendicular_to(normal), y = normal.cross(x);
+Hemisphere::Hemisphere(const Vec3& normal) : x_(perpendicular_to(normal)), y_(normal.cross(x_)), normal_(normal) {}
+
+Vec3 Hemisphere::direction(float u, float v) const {
     const float r = std::sqrt(u), angle = 2 * std::numbers::pi_v<float> * v;
-    return x * (r * std::cos(angle)) + y * (r * std::sin(angle)) + normal * std::sqrt(std::max(1 - u, 0.0f));
+    return x_ * (r * std::cos(angle)) + y_ * (r * std::sin(angle)) + normal_ * std::sqrt(std::max(1 - u, 0.0f));
 }
 
 void make_hemisphere_rays(const Elements& elements, uint32_t element, uint32_t key, uint32_t first, uint32_t count,
@@ -36,10 +37,11 @@ void make_hemisphere_rays(const Elements& elements, uint32_t element, uint32_t k
     random_pair_of(keys, indices, 0, u, v);
     random_pair_of(keys, indices, 1, s, t);
     const Vec3 normal = elements.normal(element);
+    const Hemisphere hemisphere(normal);
     out.clear();
     for (uint32_t k = 0; k < count; ++k) {
         const Vec3 p = elements.point_in(element, s[k], t[k]);
-        out.push_back({p + normal * clearance(p), cosine_direction(normal, u[k], v[k]), k});
+        out.push_back({p + normal * clearance(p), hemisphere.direction(u[k], v[k]), k});
     }
 }
 

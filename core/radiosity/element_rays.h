@@ -54,6 +54,17 @@ class ElementTracer {
     std::vector<ElementRay> more_;
 };
 
+// Directions about a normal.
+class Hemisphere {
+  public:
+    explicit Hemisphere(const Vec3& normal);
+    // For numbers in [0, 1), with a density of cosine over π (Malley's method).
+    Vec3 direction(float u, float v) const;
+
+  private:
+    Vec3 x_, y_, normal_;
+};
+
 // How far from a surface rays start, so that they do not meet it (as Points::offset).
 inline float clearance(const Vec3& p) {
     return 0x1p-18f * std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z), 1e-3f});
@@ -64,8 +75,5 @@ inline float clearance(const Vec3& p) {
 // cleared before.
 void make_hemisphere_rays(const Elements& elements, uint32_t element, uint32_t key, uint32_t first, uint32_t count,
                           std::vector<ElementRay>& out);
-
-// The direction about a normal for numbers in [0, 1), with a density of cosine over π (Malley's method).
-Vec3 cosine_direction(const Vec3& normal, float u, float v);
 
 }  // namespace trp

@@ -89,7 +89,7 @@ void Looker::look(size_t first, size_t count, std::span<const uint32_t> side_of,
     for (size_t k = 0; k < count; ++k) {
         const uint32_t element = side(k);
         const Vec3 p = places.point(element, indices[k] / kRays), normal = elements.normal(element);
-        rays.push_back({p + normal * clearance(p), cosine_direction(normal, u[k], v[k]), static_cast<uint32_t>(k)});
+        rays.push_back({p + normal * clearance(p), Hemisphere(normal).direction(u[k], v[k]), static_cast<uint32_t>(k)});
     }
     *job.rays += tracer.trace(rays, hits);
     std::fill_n(met, count, kNoElement);
