@@ -184,11 +184,13 @@ void Elements::add_side(uint32_t number, int side) {
         area_ += static_cast<double>(e.area);
         elements_.push_back(e);
     }
+    first_children_.resize(elements_.size(), kNoElement);
 }
 
 Elements Elements::whole_facets() const {
     Elements out = *this;
     out.elements_.clear();
+    out.first_children_.clear();
     out.area_ = 0;
     for (uint32_t facet = 0; facet < facets_.size(); ++facet) {
         out.facets_[facet].across = out.facets_[facet].up = 1;
@@ -223,7 +225,8 @@ void Elements::divide(uint32_t number) {
         fail(TRP_ERROR_MEMORY, "the elements would be more than {}", kMostElements);
     const uint32_t first = size();
     for (uint32_t k = 0; k < 4; ++k) elements_.push_back(quarter(number, k));
-    elements_[number].first_child = first;
+    elements_[number].first_child = first_children_[number] = first;
+    first_children_.resize(elements_.size(), kNoElement);
 }
 
 Element Elements::quarter(uint32_t element, uint32_t number) const {
@@ -237,8 +240,10 @@ Element Elements::quarter(uint32_t element, uint32_t number) const {
 
 void Elements::merge(uint32_t size) {
     elements_.resize(size);
-    for (Element& e : elements_)
-        if (!e.leaf() && e.first_child >= size) e.first_child = kNoElement;
+    first_children_.resize(size);
+    for (uint32_t i = 0; i < size; ++i)
+        if (!elements_[i].leaf() && elements_[i].first_child >= size)
+            elements_[i].first_child = first_children_[i] = kNoElement;
 }
 
 Vec3 Elements::point(const Facet& facet, float s, float t) const {
@@ -356,24 +361,30 @@ Elements::Place Elements::find(uint32_t slot, uint32_t triangle, float b1, float
     const auto cell_at = [](float x, uint32_t count) {
         return std::min(static_cast<uint32_t>(x * static_cast<float>(count)), count - 1);
     };
-    if (facet.shape == Facet::Shape::quad) {
-        out.element += cell_at(t, facet.up) * facet.across + cell_at(s, facet.across);
+    // The place within the cell, from 0 to 1, is followed down: of the elements on the way, nothing else is read.
+    const bool quad = facet.shape == Facet::Shape::quad;
+    float u = s * static_cast<float>(facet.across), v = t * static_cast<float>(facet.up);
+    if (quad) {
+        const uint32_t column = cell_at(s, facet.across), row = cell_at(t, facet.up);
+        out.element += row * facet.across + column;
+        u -= static_cast<float>(column), v -= static_cast<float>(row);
     } else {
-        const uint32_t n = facet.across, row = cell_at(t, n), left = n - row;
-        const float x = s * static_cast<float>(n), y = t * static_cast<float>(n);
-        const uint32_t column = std::min(static_cast<uint32_t>(x), left - 1);
-        const bool turned = column + 1 < left && (x - static_cast<float>(column)) + (y - static_cast<float>(row)) > 1;
+        const uint32_t n = facet.across, row = cell_at(t, n), left = n - row,
+                       column = std::min(static_cast<uint32_t>(u), left - 1);
+        u -= static_cast<float>(column), v -= static_cast<float>(row);
+        const bool turned = column + 1 < left && u + v > 1;
         out.element += n * n - left * left + 2 * column + turned;
+        if (turned) u = 1 - u, v = 1 - v;
     }
-    while (!elements_[out.element].leaf()) {
-        const Element& e = elements_[out.element];
-        const float u = (s - e.s) / e.ds, v = (t - e.t) / e.dt;
+    while (first_children_[out.element] != kNoElement) {
         uint32_t child;
-        if (facet.shape == Facet::Shape::quad)
+        if (quad)
             child = (u >= 0.5f) + 2 * (v >= 0.5f);
         else
             child = u >= 0.5f ? 1 : v >= 0.5f ? 2 : u + v > 0.5f ? 3 : 0;
-        out.element = e.first_child + child;
+        out.element = first_children_[out.element] + child;
+        u = 2 * u - static_cast<float>(child % 2), v = 2 * v - static_cast<float>(child / 2);
+        if (!quad && child == 3) u = -u, v = -v;
     }
     return out;
 }

@@ -135,6 +135,7 @@ class Elements {
     std::vector<Vec3> corners_;
     std::vector<std::vector<TriangleOf>> triangles_;  // by slot
     std::vector<Element> elements_;
+    std::vector<uint32_t> first_children_;  // as elements have them, close together for find()
     double area_ = 0;
 };
 
