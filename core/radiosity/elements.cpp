@@ -38,6 +38,15 @@ Element part(const Element& e, Facet::Shape shape, uint32_t number) {
     return out;
 }
 
+// Whether a polygon is wider than single precision can tell of its corners: what is not is no surface, and as an
+// element would get all the light of any ray or pixel that happens to meet it.
+bool has_width(std::span<const Vec3> polygon) {
+    constexpr double kThinnest = 1e-6;  // of its length
+    double length2 = 0;
+    for (const Vec3& p : polygon) length2 = std::max(length2, static_cast<double>((p - polygon[0]).length2()));
+    return polygon.size() > 2 && newell(polygon).length() > kThinnest * length2;
+}
+
 }  // namespace
 
 Elements::Elements(std::shared_ptr<const Snapshot> snapshot, float size, bool divisible)
@@ -79,9 +88,8 @@ void Elements::add_face(uint32_t slot, uint32_t face, uint32_t first_triangle, u
             of.corners[k] = static_cast<uint8_t>(std::min<ptrdiff_t>(at - loop.begin(), 3));
         }
     };
-    const Vec3d area2 = polygon.size() > 2 ? newell(polygon) : Vec3d(0, 0, 0);
-    if (area2 == Vec3d(0, 0, 0)) return;
-    const Vec3 normal(area2.normalized());
+    if (!has_width(polygon)) return;
+    const Vec3 normal(newell(polygon).normalized());
     if (triangle_count == 1 && polygon.size() == 3) {
         map(first_triangle);
         return add_facet(facet, polygon);
@@ -100,7 +108,7 @@ void Elements::add_face(uint32_t slot, uint32_t face, uint32_t first_triangle, u
         Vec3 p[3];
         for (int k = 0; k < 3; ++k) p[k] = surface.world_position(surface.vertices[3 * size_t{t} + k]);
         if (mirrored) std::swap(p[1], p[2]);
-        if ((p[1] - p[0]).cross(p[2] - p[0]) == Vec3(0, 0, 0)) continue;
+        if (!has_width(p)) continue;
         TriangleOf& of = triangles_[slot][t];
         of.facet = static_cast<uint32_t>(facets_.size());
         if (mirrored) of.corners[1] = 2, of.corners[2] = 1;
