@@ -75,6 +75,8 @@ void HierarchicalSolver::set_leaf(const SolverJob& job, uint32_t leaf, Linear ar
     const ElementLight& light = solution.light[leaf];
     Node& n = element_nodes_[leaf];
     if (leaf < mirrored_.size()) arriving.mean += mirrored_[leaf];
+    // Lines of coarse elements may fall below 0 at a part's middle.
+    for (int c = 0; c < 3; ++c) arriving.mean[c] = std::max(arriving.mean[c], 0.0);
     solution.irradiance[leaf] = arriving.mean;
     arriving += {Vec3d(light.irradiance), Vec3d(light.irradiance_x), Vec3d(light.irradiance_y)};
     // No light falls below 0.

@@ -19,8 +19,9 @@ class ProgressiveSolver : public Solver {
 
   private:
     void begin(const SolverJob& job);
-    void shoot(const SolverJob& job, uint32_t patch);
-    void gather(const SolverJob& job, uint32_t element);
+    // Return whether they were not cancelled, which leaves all as it was.
+    bool shoot(const SolverJob& job, uint32_t patch);
+    bool gather(const SolverJob& job, uint32_t element);
     bool measure(const SolverJob& job) const;
     template <class Take>
     void for_each_leaf(const Elements& elements, uint32_t element, Take&& take) const {
@@ -56,15 +57,15 @@ void ProgressiveSolver::begin(const SolverJob& job) {
     row_.resize(job.elements.size());
 }
 
-void ProgressiveSolver::shoot(const SolverJob& job, uint32_t patch) {
+bool ProgressiveSolver::shoot(const SolverJob& job, uint32_t patch) {
     const Elements& elements = job.elements;
     Solution& solution = job.solution;
     const Vec3d unshot = unshot_of(job, patch) * static_cast<double>(elements[patch].area);
-    if (unshot == Vec3d(0, 0, 0)) return;
+    if (unshot == Vec3d(0, 0, 0)) return true;
     form_factor_row({elements, job.settings.radiosity, job.settings.seed + job.statistics.steps * 0x9E3779B9u,
                      &job.cancelled, &job.statistics.rays},
                     patch, 0, row_.data());
-    if (job.cancelled) return;  // as if it had not begun
+    if (job.cancelled) return false;
     // No more arrives than was shot.
     Vec3d sum(0, 0, 0);
     for (const Vec3d& factor : row_) sum += factor;
@@ -81,13 +82,14 @@ void ProgressiveSolver::shoot(const SolverJob& job, uint32_t patch) {
             solution.unshot[j] += solution.reflected(element, arriving);
         }
     });
+    return true;
 }
 
-void ProgressiveSolver::gather(const SolverJob& job, uint32_t element) {
+bool ProgressiveSolver::gather(const SolverJob& job, uint32_t element) {
     Solution& solution = job.solution;
     form_factor_row({job.elements, job.settings.radiosity, job.settings.seed, &job.cancelled, &job.statistics.rays},
                     element, 0, row_.data());
-    if (job.cancelled) return;
+    if (job.cancelled) return false;
     Vec3d sum(0, 0, 0);
     for (uint32_t j = 0; j < job.elements.size(); ++j)
         if (row_[j] != Vec3d(0, 0, 0)) sum += row_[j] * solution.radiosity(j);
@@ -96,6 +98,7 @@ void ProgressiveSolver::gather(const SolverJob& job, uint32_t element) {
     // What is new in it, others have not gathered yet.
     solution.unshot[element] = solution.reflected(element, sum - solution.irradiance[element]);
     solution.irradiance[element] = sum;
+    return true;
 }
 
 // The share of the power that is unshot, and the ambient light that stands for it (Cohen et al. 1988, eq. 12-15).
@@ -130,11 +133,7 @@ bool ProgressiveSolver::step(const SolverJob& job) {
             if (unshot > most) most = unshot, chosen = patch;
         }
     }
-    if (order == RadiositySettings::Order::gathering)
-        gather(job, chosen);
-    else
-        shoot(job, chosen);
-    if (job.cancelled) return true;
+    if (!(order == RadiositySettings::Order::gathering ? gather(job, chosen) : shoot(job, chosen))) return true;
     ++next_;
     ++job.statistics.steps;
     const bool more = measure(job);
