@@ -17,8 +17,8 @@ struct Link {
     NodeId receiver, source;
     Vec3 tint{1, 1, 1};  // of what passes glass; its luminance is 1
     std::array<float, 9> transfer{};
-    float spread = 0;   // what the irradiance is wrong by over the receiver for a radiosity of 1; with a cluster, the
-                        // most that there may be of it
+    float spread = 0;   // what the irradiance is wrong by over the receiver for a radiosity of 1; with a cluster, what
+                        // its points differ by and more
     float hidden = 0;   // of the source, against the part that is seen: √((1 − V) / V)
     float chance = 0;   // what the irradiance is wrong by, by chance, for a radiosity of 1
     float agreed = 0;   // rays that all found the same, those of links above that it is a part of too
@@ -48,7 +48,6 @@ class LinkEvaluator {
     };
     using Places = std::array<Place, kLinkPoints>;
     Places places_of(NodeId node) const;
-    Vec3 point_near(NodeId node, const Place& place, float u, float v) const;
     double factor_at(const Place& place, const Places& sources, NodeId source);
     double cluster_error(const Link& link, const double (&arriving)[kLinkPoints][3], double mean) const;
     float greatest_factor(const Link& link) const;
