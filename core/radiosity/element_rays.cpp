@@ -1,11 +1,8 @@
 #include "radiosity/element_rays.h"
 
 #include <algorithm>
-#include <numbers>
-#include <numeric>
 
-#include "film/pixel_random.h"
-#include "geometry/embree.h"
+#include "hwy/cache_control.h"
 
 namespace trp {
 namespace {
@@ -21,28 +18,13 @@ bool has_mirrors(const Elements& elements) {
                        [&](const Facet& facet) { return (flags[facet.material] & kMirrors) != 0; });
 }
 
-Hemisphere::Hemisphere(const Vec3& normal) : x_(perpendicular_to(normal)), y_(normal.cross(x_)), normal_(normal) {}
-
-Vec3 Hemisphere::direction(float u, float v) const {
-    const float r = std::sqrt(u), angle = 2 * std::numbers::pi_v<float> * v;
-    return x_ * (r * std::cos(angle)) + y_ * (r * std::sin(angle)) + normal_ * std::sqrt(std::max(1 - u, 0.0f));
-}
-
-void make_hemisphere_rays(const Elements& elements, uint32_t element, uint32_t key, uint32_t first, uint32_t count,
-                          std::vector<ElementRay>& out) {
-    alignas(64) uint32_t keys[kBatch], indices[kBatch];
-    alignas(64) Lanes u, v, s, t;
-    std::fill_n(keys, kBatch, key);
-    std::iota(indices, indices + kBatch, first);
-    random_pair_of(keys, indices, 0, u, v);
-    random_pair_of(keys, indices, 1, s, t);
-    const Vec3 normal = elements.normal(element);
-    const Hemisphere hemisphere(normal);
-    out.clear();
-    for (uint32_t k = 0; k < count; ++k) {
-        const Vec3 p = elements.point_in(element, s[k], t[k]);
-        out.push_back({p + normal * clearance(p), hemisphere.direction(u[k], v[k]), k});
-    }
+ElementTracer::ElementTracer(const Elements& elements, uint32_t most_turns)
+    : elements_(elements), most_turns_(most_turns) {
+    std::fill_n(packet_.ray.tnear, 16, 0.0f);
+    std::fill_n(packet_.ray.time, 16, 0.0f);
+    std::fill_n(packet_.ray.mask, 16, kMask);
+    std::fill_n(packet_.ray.flags, 16, 0u);
+    std::fill_n(packet_.ray.id, 16, 0u);
 }
 
 uint64_t ElementTracer::trace(std::vector<ElementRay>& rays, std::vector<ElementHit>& hits) {
@@ -51,7 +33,7 @@ uint64_t ElementTracer::trace(std::vector<ElementRay>& rays, std::vector<Element
         more_.clear();
         for (size_t first = 0; first < rays.size(); first += kBatch) {
             const int in_batch = static_cast<int>(std::min<size_t>(rays.size() - first, kBatch));
-            batch(&rays[first], in_batch, more_, hits);
+            batch(&rays[first], in_batch, hits);
         }
         count += rays.size();
         rays.swap(more_);
@@ -59,88 +41,117 @@ uint64_t ElementTracer::trace(std::vector<ElementRay>& rays, std::vector<Element
     return count;
 }
 
-void ElementTracer::batch(const ElementRay* rays, int count, std::vector<ElementRay>& more,
-                          std::vector<ElementHit>& hits) {
-    const Snapshot& snapshot = elements_.snapshot();
-    bool any_special = false;
-    for (int first = 0; first < count; first += 16) {
-        alignas(64) RTCRayHit16 packet;
-        alignas(64) int valid[16];
-        for (int k = 0; k < 16; ++k) {
-            valid[k] = first + k < count ? -1 : 0;
-            const ElementRay& ray = rays[std::min(first + k, count - 1)];
-            packet.ray.org_x[k] = ray.origin.x, packet.ray.org_y[k] = ray.origin.y, packet.ray.org_z[k] = ray.origin.z;
-            packet.ray.dir_x[k] = ray.direction.x, packet.ray.dir_y[k] = ray.direction.y;
-            packet.ray.dir_z[k] = ray.direction.z;
-            packet.ray.tnear[k] = packet.ray.time[k] = 0;
-            packet.ray.tfar[k] = 1e30f;
-            packet.ray.mask[k] = kMask;
-            packet.ray.flags[k] = packet.ray.id[k] = 0;
-            packet.hit.geomID[k] = packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+uint64_t ElementTracer::trace(const HemisphereRays& from, uint32_t first, int count, uint32_t* counts,
+                              std::vector<ElementHit>& others) {
+    from.make(first, origins_, directions_);
+    RTCRay16& ray = packet_.ray;
+    const uint32_t none = elements_.size();
+    for (int begin = 0; begin < count; begin += 16) {
+        float* const origin[3] = {ray.org_x, ray.org_y, ray.org_z};
+        float* const direction[3] = {ray.dir_x, ray.dir_y, ray.dir_z};
+        for (int c = 0; c < 3; ++c) {
+            std::copy_n(origins_[c] + begin, 16, origin[c]);
+            std::copy_n(directions_[c] + begin, 16, direction[c]);
         }
-        intersect16(snapshot.rays->embree(), valid, packet, Coherence::incoherent);
-        for (int k = 0; k < 16 && first + k < count; ++k) {
-            const int i = first + k;
-            points_.slot[i] = kNoSlot;
-            if (packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) {
-                hits.push_back({rays[i].id, kNoElement, rays[i].weight, true, rays[i].mirrored});
-                continue;
-            }
-            const unsigned instance = packet.hit.instID[0][k];
-            const uint32_t slot = instance != RTC_INVALID_GEOMETRY_ID ? instance : packet.hit.geomID[k],
-                           triangle = packet.hit.primID[k];
-            const uint32_t material = snapshot.surfaces[slot].material(triangle);
-            if (snapshot.material_flags[material] & (kMayHaveHoles | kTransmits | kMirrors)) {
-                points_.slot[i] = slot;
-                points_.triangle[i] = triangle;
-                points_.b1[i] = packet.hit.u[k];
-                points_.b2[i] = packet.hit.v[k];
-                points_.time[i] = 0;
-                points_.depth[i] = packet.ray.tfar[k];
-                points_.to_viewer.set(i, -rays[i].direction);
-                any_special = true;
-                continue;
-            }
-            const auto place = elements_.find(slot, triangle, packet.hit.u[k], packet.hit.v[k], rays[i].direction);
-            hits.push_back({rays[i].id, place.element, rays[i].weight, false, rays[i].mirrored,
-                            rays[i].origin + rays[i].direction * packet.ray.tfar[k]});
-        }
+        const bool any_goes_on = meet(begin, std::min(count - begin, 16));
+        for (int k = begin; k < begin + 16; ++k) hwy::Prefetch(&counts[std::min(met_[k], none)]);
+        for (int k = 0; k < 16 && any_goes_on; ++k)
+            if (met_[begin + k] == kGoesOn) hold(begin + k, k);
     }
-    if (any_special) go_on(rays, count, more, hits);
+    for (int k = 0; k < count; ++k) ++counts[std::min(met_[k], none)];
+    if (!any_held_) return static_cast<uint64_t>(count);
+    std::vector<ElementRay> rays(count), onward;
+    for (int i = 0; i < count; ++i) rays[i] = {origins_.get(i), directions_.get(i)};
+    more_.clear();
+    go_on(rays.data(), count, others);
+    onward.swap(more_);
+    return static_cast<uint64_t>(count) + trace(onward, others);
 }
 
-// The lanes that met a surface with holes, of glass or with a mirror.
-void ElementTracer::go_on(const ElementRay* rays, int count, std::vector<ElementRay>& more,
-                          std::vector<ElementHit>& hits) {
+// The packet holds so many of the batch's rays, from number `first` on. Returns whether any goes on.
+bool ElementTracer::meet(int first, int count) {
+    alignas(64) int valid[16];
+    for (int k = 0; k < 16; ++k) valid[k] = k < count ? -1 : 0;
+    std::fill_n(packet_.ray.tfar, 16, 1e30f);
+    std::fill_n(packet_.hit.geomID, 16, RTC_INVALID_GEOMETRY_ID);
+    std::fill_n(packet_.hit.instID[0], 16, RTC_INVALID_GEOMETRY_ID);
+    intersect16(elements_.snapshot().rays->embree(), valid, packet_, Coherence::incoherent);
+    return find_elements(elements_, packet_, met_ + first);
+}
+
+// What lane `k` of the packet has met, ray `i` of the batch, until the batch goes on.
+void ElementTracer::hold(int i, int k) {
+    if (!passed_) passed_ = std::make_unique<Passed>();
+    Points& points = passed_->points;
+    if (!any_held_) std::fill_n(points.slot, kBatch, kNoSlot);
+    any_held_ = true;
+    const unsigned instance = packet_.hit.instID[0][k];
+    points.slot[i] = instance != RTC_INVALID_GEOMETRY_ID ? instance : packet_.hit.geomID[k];
+    points.triangle[i] = packet_.hit.primID[k];
+    points.b1[i] = packet_.hit.u[k];
+    points.b2[i] = packet_.hit.v[k];
+    points.time[i] = 0;
+    points.depth[i] = packet_.ray.tfar[k];
+    points.to_viewer.set(i, -Vec3(packet_.ray.dir_x[k], packet_.ray.dir_y[k], packet_.ray.dir_z[k]));
+}
+
+void ElementTracer::batch(const ElementRay* rays, int count, std::vector<ElementHit>& hits) {
+    RTCRay16& to = packet_.ray;
+    for (int first = 0; first < count; first += 16) {
+        const int here = std::min(count - first, 16);
+        for (int k = 0; k < 16; ++k) {
+            const ElementRay& ray = rays[first + std::min(k, here - 1)];
+            to.org_x[k] = ray.origin.x, to.org_y[k] = ray.origin.y, to.org_z[k] = ray.origin.z;
+            to.dir_x[k] = ray.direction.x, to.dir_y[k] = ray.direction.y, to.dir_z[k] = ray.direction.z;
+        }
+        meet(first, here);
+        for (int k = 0; k < here; ++k) {
+            const ElementRay& ray = rays[first + k];
+            if (met_[first + k] == kGoesOn) {
+                hold(first + k, k);
+                continue;
+            }
+            ElementHit& hit = hits.emplace_back();
+            hit = {ray.id, met_[first + k], ray.weight, packet_.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID, ray.mirrored};
+            if (!hit.left) hit.position = ray.origin + ray.direction * packet_.ray.tfar[k];
+        }
+    }
+    if (any_held_) go_on(rays, count, hits);
+}
+
+// The lanes that are held.
+void ElementTracer::go_on(const ElementRay* rays, int count, std::vector<ElementHit>& hits) {
     const Snapshot& snapshot = elements_.snapshot();
-    std::fill(points_.slot + count, points_.slot + kBatch, kNoSlot);
-    points_.clear_footprints();
-    locate(snapshot, NormalChoice::mesh, points_);
-    evaluate(snapshot, points_, coefficients_, program_);
+    any_held_ = false;
+    Points& points = passed_->points;
+    Coefficients& coefficients = passed_->coefficients;
+    points.clear_footprints();
+    locate(snapshot, NormalChoice::mesh, points);
+    evaluate(snapshot, points, coefficients, passed_->program);
     for (int i = 0; i < count; ++i) {
-        if (points_.slot[i] == kNoSlot) continue;
+        if (points.slot[i] == kNoSlot) continue;
         const ElementRay& ray = rays[i];
-        const CompiledMaterial& material = snapshot.materials[points_.material[i]];
-        const float alpha = coefficients_.alpha[i];
+        const CompiledMaterial& material = snapshot.materials[points.material[i]];
+        const float alpha = coefficients.alpha[i];
         const auto turn = [&](const Vec3& direction, const Vec3& share, bool mirrored) {
             const Vec3 weight = ray.weight * share;
             if (ray.turns == most_turns_ || greatest(weight) < kLeastWeight) return;
-            const Vec3 normal = points_.geometric_normal.get(i);
-            const float off = points_.offset[i] * (direction.dot(normal) < 0 ? -1.0f : 1.0f);
-            more.push_back({points_.position.get(i) + normal * off, direction, ray.id, weight, ray.turns + 1,
-                            ray.mirrored || mirrored});
+            const Vec3 normal = points.geometric_normal.get(i);
+            const float off = points.offset[i] * (direction.dot(normal) < 0 ? -1.0f : 1.0f);
+            more_.push_back({points.position.get(i) + normal * off, direction, ray.id, weight, ray.turns + 1,
+                             ray.mirrored || mirrored});
         };
         if (alpha > 0) {
             // An element's reflectance holds its alpha.
             const auto place =
-                elements_.find(points_.slot[i], points_.triangle[i], points_.b1[i], points_.b2[i], ray.direction);
-            hits.push_back({ray.id, place.element, ray.weight, false, ray.mirrored, points_.position.get(i)});
+                elements_.find(points.slot[i], points.triangle[i], points.b1[i], points.b2[i], ray.direction);
+            hits.push_back({ray.id, place.element, ray.weight, false, ray.mirrored, points.position.get(i)});
         }
         Vec3 through = Vec3(1, 1, 1) * (1 - alpha);
-        if (material.transmits) through += coefficients_.transmission.get(i) * alpha;
+        if (material.transmits) through += coefficients.transmission.get(i) * alpha;
         if (through != Vec3(0, 0, 0)) turn(ray.direction, through, false);
         if (!material.mirrors) continue;
-        const Vec3 mirror = coefficients_.mirror.get(i) * alpha, n = points_.normal.get(i);
+        const Vec3 mirror = coefficients.mirror.get(i) * alpha, n = points.normal.get(i);
         if (mirror != Vec3(0, 0, 0)) turn((ray.direction - n * (2 * ray.direction.dot(n))).normalized(), mirror, true);
     }
 }

@@ -3,9 +3,11 @@
 // with what is left of their weight.
 #pragma once
 
+#include <memory>
 #include <vector>
 
-#include "radiosity/elements.h"
+#include "radiosity/find_elements.h"
+#include "radiosity/hemisphere_rays.h"
 #include "shading/equation.h"
 
 namespace trp {
@@ -36,44 +38,35 @@ bool has_mirrors(const Elements& elements);
 class ElementTracer {
   public:
     // `most_turns`: surfaces that a ray may pass.
-    explicit ElementTracer(const Elements& elements, uint32_t most_turns = 16)
-        : elements_(elements), most_turns_(most_turns) {}
+    explicit ElementTracer(const Elements& elements, uint32_t most_turns = 16);
     // Appends to `hits`, in an order that depends on the rays alone; returns the number of rays traced. `rays` is used
     // up.
     uint64_t trace(std::vector<ElementRay>& rays, std::vector<ElementHit>& hits);
+    // Rays number `first`, a multiple of kBatch, to `first` + `count` (at most kBatch of them) into a hemisphere: adds
+    // each to the count of the element that it meets, or to one more that is for none; and to `others`, as above, what
+    // those meet that may go on from where they meet something. Returns the number of rays traced.
+    uint64_t trace(const HemisphereRays& from, uint32_t first, int count, uint32_t* counts,
+                   std::vector<ElementHit>& others);
 
   private:
-    void batch(const ElementRay* rays, int count, std::vector<ElementRay>& more, std::vector<ElementHit>& hits);
-    void go_on(const ElementRay* rays, int count, std::vector<ElementRay>& more, std::vector<ElementHit>& hits);
+    struct Passed {
+        Points points;
+        Coefficients coefficients;
+        ProgramScratch program;
+    };
+    bool meet(int first, int count);
+    void hold(int i, int k);
+    void batch(const ElementRay* rays, int count, std::vector<ElementHit>& hits);
+    void go_on(const ElementRay* rays, int count, std::vector<ElementHit>& hits);
 
     const Elements& elements_;
     uint32_t most_turns_;
-    Points points_;
-    Coefficients coefficients_;
-    ProgramScratch program_;
+    RTCRayHit16 packet_;
+    alignas(64) uint32_t met_[kBatch];  // by the batch's rays
+    LaneVec3 origins_, directions_;
+    bool any_held_ = false;
+    std::unique_ptr<Passed> passed_;  // by the batch's rays; made when it is needed
     std::vector<ElementRay> more_;
 };
-
-// Directions about a normal.
-class Hemisphere {
-  public:
-    explicit Hemisphere(const Vec3& normal);
-    // For numbers in [0, 1), with a density of cosine over π (Malley's method).
-    Vec3 direction(float u, float v) const;
-
-  private:
-    Vec3 x_, y_, normal_;
-};
-
-// How far from a surface rays start, so that they do not meet it (as Points::offset).
-inline float clearance(const Vec3& p) {
-    return 0x1p-18f * std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z), 1e-3f});
-}
-
-// Rays number `first` to `first` + `count` of an element's sequence (at most kBatch of them): from points of it, in
-// directions that are uniform in the base circle of its hemisphere. Their ids are their places in `out`, which is
-// cleared before.
-void make_hemisphere_rays(const Elements& elements, uint32_t element, uint32_t key, uint32_t first, uint32_t count,
-                          std::vector<ElementRay>& out);
 
 }  // namespace trp

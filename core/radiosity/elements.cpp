@@ -47,19 +47,29 @@ bool has_width(std::span<const Vec3> polygon) {
     return polygon.size() > 2 && newell(polygon).length() > kThinnest * length2;
 }
 
+// Which sides rays may go on from.
+uint8_t passes(const CompiledMaterial& material) {
+    if (material.has_holes || material.transmits || material.mirrors)
+        return Elements::TriangleOf::kPass | Elements::TriangleOf::kPassBehind;
+    return material.double_sided ? 0 : Elements::TriangleOf::kPassBehind;
+}
+
 }  // namespace
 
 Elements::Elements(std::shared_ptr<const Snapshot> snapshot, float size, bool divisible)
     : snapshot_(std::move(snapshot)), size_(size), divisible_(divisible || size > 0) {
-    triangles_.resize(snapshot_->surfaces.size());
-    for (uint32_t slot = 0; slot < triangles_.size(); ++slot) {
+    for (uint32_t slot = 0; slot < snapshot_->surfaces.size(); ++slot) {
         const PlacedSurface& surface = snapshot_->surfaces[slot];
+        first_triangles_.push_back(static_cast<uint32_t>(triangles_.size()));
         if (!surface.mesh) continue;
         const uint32_t count = surface.surface->triangle_count();
-        triangles_[slot].resize(count);
+        triangles_.resize(triangles_.size() + count);
         for (uint32_t first = 0, end; first < count; first = end) {
             const uint32_t face = surface.face(first);
             for (end = first + 1; end < count && surface.face(end) == face;) ++end;
+            for (uint32_t t = first; t < end; ++t)
+                triangles_[first_triangles_[slot] + t].flags =
+                    passes(snapshot_->materials[surface.face_material(face)]);
             add_face(slot, face, first, end - first);
         }
     }
@@ -81,7 +91,7 @@ void Elements::add_face(uint32_t slot, uint32_t face, uint32_t first_triangle, u
     for (const uint32_t c : loop) polygon.push_back(surface.world_position(mesh.corner_vertices[c]));
 
     const auto map = [&](uint32_t triangle) {
-        TriangleOf& of = triangles_[slot][triangle];
+        TriangleOf& of = triangles_[first_triangles_[slot] + triangle];
         of.facet = static_cast<uint32_t>(facets_.size());
         for (int k = 0; k < 3; ++k) {
             const auto at = std::find(loop.begin(), loop.end(), surface.corner(triangle, k));
@@ -109,7 +119,7 @@ void Elements::add_face(uint32_t slot, uint32_t face, uint32_t first_triangle, u
         for (int k = 0; k < 3; ++k) p[k] = surface.world_position(surface.vertices[3 * size_t{t} + k]);
         if (mirrored) std::swap(p[1], p[2]);
         if (!has_width(p)) continue;
-        TriangleOf& of = triangles_[slot][t];
+        TriangleOf& of = triangles_[first_triangles_[slot] + t];
         of.facet = static_cast<uint32_t>(facets_.size());
         if (mirrored) of.corners[1] = 2, of.corners[2] = 1;
         facet.triangle = t;
@@ -193,6 +203,31 @@ void Elements::add_side(uint32_t number, int side) {
         elements_.push_back(e);
     }
     first_children_.resize(elements_.size(), kNoElement);
+    tell_triangles(number);
+}
+
+// What find_elements() is to know of a facet.
+void Elements::tell_triangles(uint32_t number) {
+    const Facet& facet = facets_[number];
+    float twist[2] = {0, 0};
+    if (facet.skewed) {
+        const Vec3* c = &corners_[facet.first_corner];
+        const Vec3 e1 = c[1] - c[0], e2 = c[3] - c[0], e3 = c[2] - c[1] - e2;
+        const float area = e1.cross(e2).dot(facet.normal);
+        twist[0] = e3.cross(e2).dot(facet.normal) / area;
+        twist[1] = e1.cross(e3).dot(facet.normal) / area;
+    }
+    for (size_t t = size_t{first_triangles_[facet.slot]} + facet.triangle;
+         t < triangles_.size() && triangles_[t].facet == number; ++t) {
+        TriangleOf& of = triangles_[t];
+        of.flags |= (facet.shape == Facet::Shape::triangle ? TriangleOf::kTriangle : 0) |
+                    (facet.skewed ? TriangleOf::kSkewed : 0);
+        of.normal = facet.normal;
+        of.across = static_cast<uint16_t>(facet.across);
+        of.up = static_cast<uint16_t>(facet.up);
+        std::copy_n(facet.roots, 2, of.roots);
+        std::copy_n(twist, 2, of.twist);
+    }
 }
 
 Elements Elements::whole_facets() const {
@@ -234,6 +269,7 @@ void Elements::divide(uint32_t number) {
     const uint32_t first = size();
     for (uint32_t k = 0; k < 4; ++k) elements_.push_back(quarter(number, k));
     elements_[number].first_child = first_children_[number] = first;
+    divided_ = true;
     first_children_.resize(elements_.size(), kNoElement);
 }
 
@@ -339,7 +375,7 @@ float Elements::radius(uint32_t element) const {
 }
 
 Elements::Place Elements::find(uint32_t slot, uint32_t triangle, float b1, float b2, bool behind) const {
-    const TriangleOf& of = triangles_[slot][triangle];
+    const TriangleOf& of = triangle_of(slot, triangle);
     if (of.facet == kNoElement) return {};
     const Facet& facet = facets_[of.facet];
     Place out{facet.roots[behind ? 1 : 0], 0, 0};

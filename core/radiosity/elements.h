@@ -61,6 +61,7 @@ class Elements {
     const std::vector<Facet>& facets() const { return facets_; }
     const Element& operator[](uint32_t element) const { return elements_[element]; }
     uint32_t size() const { return static_cast<uint32_t>(elements_.size()); }
+    bool leaf(uint32_t element) const { return first_children_[element] == kNoElement; }
     const Facet& facet_of(uint32_t element) const { return facets_[elements_[element].facet]; }
     Vec3 normal(uint32_t element) const { return facet_of(element).normal * (elements_[element].side ? -1.0f : 1.0f); }
     double area() const { return area_; }  // of all leaves
@@ -108,20 +109,46 @@ class Elements {
         return find(slot, triangle, b1, b2, is_behind(slot, triangle, direction));
     }
     bool is_behind(uint32_t slot, uint32_t triangle, const Vec3& direction) const {
-        const uint32_t facet = triangles_[slot][triangle].facet;
+        const uint32_t facet = triangle_of(slot, triangle).facet;
         return facet != kNoElement && facets_[facet].normal.dot(direction) > 0;
     }
     // And the triangle of the surface, with its barycentrics, that shows a point of a facet; of a polygon, which has no
     // coordinates, one that is uniform in area where s and t are.
     void locate(const Facet& facet, float s, float t, uint32_t& triangle, float& b1, float& b2) const;
 
-  private:
+    // What find_elements() reads, until there are other elements or sides.
     struct TriangleOf {
+        enum Flag : uint8_t {
+            kTriangle = 1,  // the facet is one
+            kSkewed = 2,    // or a quad that is no parallelogram
+            kPass = 4,      // rays may go on from the facet's front: by a hole, glass or a mirror
+            kPassBehind = 8,
+        };
         uint32_t facet = kNoElement;
         uint8_t corners[3] = {0, 1, 2};  // of the facet
+        uint8_t flags = 0;
+        // The facet's.
+        Vec3 normal{0, 0, 0};
+        uint16_t across = 1, up = 1;
+        uint32_t roots[2] = {kNoElement, kNoElement};
+        float twist[2] = {0, 0};  // of a quad: what its third corner has more than the parallelogram's, in its sides
     };
+    struct Lookup {
+        const TriangleOf* triangles;
+        const uint32_t* first_triangles;  // by slot
+        const uint32_t* first_children;   // null: no element is divided
+    };
+    Lookup lookup() const {
+        return {triangles_.data(), first_triangles_.data(), divided_ ? first_children_.data() : nullptr};
+    }
+
+  private:
+    const TriangleOf& triangle_of(uint32_t slot, uint32_t triangle) const {
+        return triangles_[size_t{first_triangles_[slot]} + triangle];
+    }
     void add_face(uint32_t slot, uint32_t face, uint32_t first_triangle, uint32_t triangle_count);
     void add_facet(Facet facet, std::span<const Vec3> corners);
+    void tell_triangles(uint32_t facet);
     void set_grid(Facet& facet) const;
     uint32_t triangle_by_area(const Facet& facet, float& share) const;
     Vec3 corner(const Element& element, uint32_t k) const;  // about the facet's normal
@@ -133,10 +160,12 @@ class Elements {
     bool divisible_;
     std::vector<Facet> facets_;
     std::vector<Vec3> corners_;
-    std::vector<std::vector<TriangleOf>> triangles_;  // by slot
+    std::vector<TriangleOf> triangles_;  // slot by slot
     std::vector<Element> elements_;
-    std::vector<uint32_t> first_children_;  // as elements have them, close together for find()
+    std::vector<uint32_t> first_children_;  // as elements have them, close together
     double area_ = 0;
+    std::vector<uint32_t> first_triangles_;  // by slot
+    bool divided_ = false;                   // an element is
 };
 
 }  // namespace trp

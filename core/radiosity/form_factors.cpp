@@ -5,8 +5,8 @@
 
 #include "base/parallel.h"
 #include "film/pixel_random.h"
-#include "radiosity/element_rays.h"
 #include "radiosity/hemicube.h"
+#include "radiosity/hemisphere_row.h"
 #include "radiosity/polygon_factors.h"
 #include "radiosity/way_rays.h"
 
@@ -97,28 +97,6 @@ void analytic_row(const FormFactorJob& job, uint32_t i, uint32_t first, Vec3d* o
     });
 }
 
-// `mirrored`: of what comes by mirrors alone.
-void hemisphere_row(const FormFactorJob& job, uint32_t i, uint32_t first, bool mirrored, Vec3d* out) {
-    const Elements& elements = job.elements;
-    const uint32_t count = job.settings.rays, chunks = (count + kBatch - 1) / kBatch;
-    std::vector<std::vector<ElementHit>> hits(chunks);  // in the order of the rays, whoever traces them
-    parallel_ranges(chunks, 16, [&](size_t begin, size_t end) {
-        const auto tracer = std::make_unique<ElementTracer>(elements);
-        std::vector<ElementRay> rays;
-        for (size_t chunk = begin; chunk < end && !*job.cancelled; ++chunk) {
-            const uint32_t from = static_cast<uint32_t>(chunk) * kBatch;
-            make_hemisphere_rays(elements, i, i * 0x9E3779B9u ^ job.seed * 0x85EBCA6Bu, from,
-                                 std::min<uint32_t>(kBatch, count - from), rays);
-            *job.rays += tracer->trace(rays, hits[chunk]);
-        }
-    });
-    const double share = 1.0 / count;
-    for (const auto& of : hits)
-        for (const ElementHit& hit : of)
-            if (hit.element != kNoElement && hit.element >= first && hit.mirrored >= mirrored)
-                out[hit.element - first] += Vec3d(hit.weight) * share;
-}
-
 }  // namespace
 
 bool tints(const Snapshot& snapshot) {
@@ -132,8 +110,11 @@ void form_factor_row(const FormFactorJob& job, uint32_t i, uint32_t first, Vec3d
     const FormFactors kind = job.settings.form_factors;
     if (kind == FormFactors::analytic) analytic_row(job, i, first, out);
     if (kind == FormFactors::hemicube) hemicube_row(job, i, first, out);
-    if (kind == FormFactors::hemisphere || has_mirrors(job.elements))
-        hemisphere_row(job, i, first, kind != FormFactors::hemisphere, out);
+    const bool all = kind == FormFactors::hemisphere;
+    if (!all && !has_mirrors(job.elements)) return;
+    HemisphereRow row(job.elements);
+    row.trace(job, i, !all);
+    for (uint32_t j = first; j < job.elements.size(); ++j) out[j - first] += row.take(j);
 }
 
 }  // namespace trp

@@ -28,12 +28,11 @@ std::vector<Bounds> boxes_of_mirrors(const Elements& elements) {
     return out;
 }
 
-bool meets(const ElementRay& ray, const Bounds& box) {
+bool meets(const Vec3& origin, const Vec3& direction, const Bounds& box) {
     float from = 0, to = 1e30f;
     for (int k = 0; k < 3; ++k) {
-        const float inverse = 1 / ray.direction[k], margin = 1e-4f * (1 + std::abs(box.max[k] - box.min[k]));
-        const float a = (box.min[k] - margin - ray.origin[k]) * inverse,
-                    b = (box.max[k] + margin - ray.origin[k]) * inverse;
+        const float inverse = 1 / direction[k], margin = 1e-4f * (1 + std::abs(box.max[k] - box.min[k]));
+        const float a = (box.min[k] - margin - origin[k]) * inverse, b = (box.max[k] + margin - origin[k]) * inverse;
         from = std::max(from, std::min(a, b));
         to = std::min(to, std::max(a, b));
     }
@@ -56,7 +55,8 @@ void MirrorRows::add(const LightingJob& job, uint32_t first, std::span<const Ele
     const size_t count = elements.size() - first, groups = (count + kInGroup - 1) / kInGroup;
     parallel_ranges(groups, 1, [&](size_t begin, size_t end) {
         const auto tracer = std::make_unique<ElementTracer>(elements);
-        std::vector<ElementRay> of_one, rays;
+        LaneVec3 origins, directions;
+        std::vector<ElementRay> rays;
         std::vector<ElementHit> hits;
         for (size_t group = begin; group < end && !*job.cancelled; ++group) {
             rays.clear();
@@ -65,13 +65,13 @@ void MirrorRows::add(const LightingJob& job, uint32_t first, std::span<const Ele
                 const auto element = first + static_cast<uint32_t>(k);
                 if (light[element].reflectance == Vec3(0, 0, 0)) continue;
                 const uint32_t number = ray_count(elements, element);
-                make_hemisphere_rays(elements, element, element * 0x9E3779B9u ^ job.seed * 0x85EBCA6Bu, 0, number,
-                                     of_one);
-                for (ElementRay& ray : of_one) {
-                    if (std::none_of(boxes.begin(), boxes.end(), [&](const Bounds& box) { return meets(ray, box); }))
-                        continue;
-                    ray.id = element;
-                    rays.push_back(ray);
+                HemisphereRays(elements, element, job.seed).make(0, origins, directions);
+                for (uint32_t ray = 0; ray < number; ++ray) {
+                    const auto lane = static_cast<int>(ray);
+                    const Vec3 origin = origins.get(lane), direction = directions.get(lane);
+                    if (std::any_of(boxes.begin(), boxes.end(),
+                                    [&](const Bounds& box) { return meets(origin, direction, box); }))
+                        rays.push_back({origin, direction, element});
                 }
             }
             *job.rays += tracer->trace(rays, hits);
