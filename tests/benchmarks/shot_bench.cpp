@@ -14,6 +14,7 @@ namespace {
 
 struct Options {
     std::string scene, name = "radiosity.shot";
+    std::vector<std::string> kinds = {"analytic", "hemisphere"};
     double element_size = 0.0045, goal = kNone;
     uint32_t rays = 1u << 18, threads = 2, repeats = 5;
 };
@@ -71,6 +72,7 @@ int main(int argc, char** argv) {
     CLI::App app("Shots of progressive radiosity beside a bare loop over Embree");
     app.add_option("SCENE", options.scene, "A .glb or .gltf file")->required();
     app.add_option("--name", options.name, "Of the figures")->capture_default_str();
+    app.add_option("--kind", options.kinds, "Of the form factors; several may be given")->capture_default_str();
     app.add_option("--element-size", options.element_size, "Metres")->capture_default_str();
     app.add_option("--rays", options.rays, "Of a shot into the hemisphere")->capture_default_str();
     app.add_option("--threads", options.threads, "Of the step and of the loop")
@@ -83,6 +85,6 @@ int main(int argc, char** argv) {
     CLI11_PARSE(app, argc, argv);
     return run("shot_bench", [&] {
         const auto loaded = load_complete(options.scene, 960, 540, options.threads);
-        for (const char* kind : {"analytic", "hemisphere"}) measure(options, loaded.scene.get(), kind);
+        for (const std::string& kind : options.kinds) measure(options, loaded.scene.get(), kind);
     });
 }
