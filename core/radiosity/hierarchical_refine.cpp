@@ -25,18 +25,17 @@ double least_share(std::vector<double> shares, double allowed) {
 
 }  // namespace
 
-HierarchicalSolver::LinkError HierarchicalSolver::link_error(const Link& link) const {
-    const Node& source = node(link.source);
-    const double within = luminance(link.factor()) * std::sqrt(static_cast<double>(source.variance));
-    return {static_cast<double>(link.spread) * brightness(source.radiosity.mean), within,
-            kCoherent * within * static_cast<double>(link.hidden),
-            static_cast<double>(link.chance) * brightness(source.radiosity.mean)};
+HierarchicalSolver::LinkError HierarchicalSolver::link_error(size_t number) const {
+    const Link& link = links_[number];
+    const double within = luminance(link.factor()) * std::sqrt(static_cast<double>(node(link.source).variance));
+    const auto bright = static_cast<double>(brightness_[number]);
+    return {static_cast<double>(link.spread) * bright, within * static_cast<double>(link.unresolved),
+            kCoherent * within * static_cast<double>(link.hidden), static_cast<double>(link.chance) * bright};
 }
 
 // What chance may do to the factor of a link, or of those that take its place.
-float HierarchicalSolver::allowed(const Link& link) const {
-    const double carried =
-        brightness(node(link.source).radiosity.mean) * static_cast<double>(node(link.receiver).reflectance);
+float HierarchicalSolver::allowed(NodeId receiver, double bright) const {
+    const double carried = bright * static_cast<double>(node(receiver).reflectance);
     return static_cast<float>(kChance * tolerance_ / std::max(carried, 1e-30));
 }
 
@@ -44,8 +43,9 @@ float HierarchicalSolver::allowed(const Link& link) const {
 double HierarchicalSolver::measure(const SolverJob& job) {
     for (auto* nodes : {&cluster_nodes_, &element_nodes_})
         for (Node& n : *nodes) n.own_error = n.own_coherent = 0;
-    for (const Link& link : links_) {
-        const LinkError error = link_error(link);
+    for (size_t l = 0; l < links_.size(); ++l) {
+        const LinkError error = link_error(l);
+        const Link& link = links_[l];
         node(link.receiver).own_error += static_cast<float>(error.squares());
         node(link.receiver).own_coherent += static_cast<float>(error.coherent);
     }
@@ -89,7 +89,7 @@ bool HierarchicalSolver::refine(const SolverJob& job) {
         for (size_t l = begin; l < end; ++l) {
             const Link& link = links_[l];
             const Node& to = node(link.receiver);
-            const LinkError error = link_error(link);
+            const LinkError error = link_error(l);
             parts[l] = part_of(link, error);
             if (parts[l] != Part::none)
                 shares[l] = (error.squares() + error.coherent * static_cast<double>(to.coherent)) *
@@ -123,7 +123,7 @@ bool HierarchicalSolver::refine(const SolverJob& job) {
         for (const NodeId part : std::span(below.ids, below.count)) {
             Link next{by_receiver ? part : link.receiver, by_receiver ? link.source : part};
             next.agreed = link.agreed / static_cast<float>(below.count);
-            next.allowed = allowed(link);
+            next.allowed = allowed(link.receiver, static_cast<double>(brightness_[l]));
             if (clusters_.may_see(elements, next.receiver, next.source)) fresh.push_back(next);
         }
     }
