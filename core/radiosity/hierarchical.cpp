@@ -90,9 +90,10 @@ void HierarchicalSolver::evaluate(const SolverJob& job, std::vector<Link>& links
 }
 
 bool HierarchicalSolver::step(const SolverJob& job) {
+    const bool by_error = job.settings.radiosity.link_ratio == 0;
     if (!begun_) {
         if (!begin(job)) return true;
-    } else if (job.statistics.residual <= tolerance_ || is_full() || !refine(job)) {
+    } else if ((by_error && job.statistics.residual <= tolerance_) || is_full() || !refine(job)) {
         return job.cancelled;
     }
     solve(job);
@@ -100,7 +101,9 @@ bool HierarchicalSolver::step(const SolverJob& job) {
     job.statistics.links = links_.size();
     job.statistics.residual = std::sqrt(measure(job));
     job.statistics.wanted = tolerance_;
-    return job.statistics.residual > tolerance_ && !is_full();
+    const bool done = by_error && job.statistics.residual <= tolerance_;
+    job.statistics.limited = is_full() && !done;
+    return !done && !is_full();
 }
 
 void HierarchicalSolver::links(const Elements& elements, std::vector<ElementLink>& out) const {

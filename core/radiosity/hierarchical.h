@@ -1,13 +1,13 @@
 // Hierarchical radiosity (Hanrahan, Salzman and Aupperle, "A Rapid Hierarchical Radiosity Algorithm", 1991): light goes
 // over links between nodes of quad-trees, each as high up as the tolerance allows, and clusters above them.
 //
-// Light is linear over elements (Linear); of clusters each root gets and gives its own (cluster_light.h). A link's error
-// is what no line follows of its irradiance over the receiver and of the source's radiosity within it, for clusters what
-// one point for all of the source leaves out, and what chance may have done; times the receiver's reflectance. The
-// squares of all errors that come to an element are added up, and over the scene weighed by area. That is an estimate of
-// the solution's error, in W/m², and each step refines the links that have more than an equal share of what the
-// tolerance allows, along with the elements on which lamps shine unevenly, until it is below the tolerance. As light is
-// gathered between the steps, links are refined for what they carry then (multigridding).
+// Light is linear over elements (Linear); of clusters each root gets and gives its own (cluster_light.h). A link's
+// error is what no line follows of its irradiance over the receiver and of the source's radiosity within it, for
+// clusters what one point for all of the source leaves out, and what chance may have done; times the receiver's
+// reflectance. The squares of all errors that come to an element are added up, and over the scene weighed by area. That
+// is an estimate of the solution's error, in W/m², and each step refines the links that have more than an equal share
+// of what the tolerance allows, along with the elements on which lamps shine unevenly, until it is below the tolerance.
+// As light is gathered between the steps, links are refined for what they carry then (multigridding).
 #pragma once
 
 #include <array>
@@ -74,6 +74,15 @@ class HierarchicalSolver : public Solver {
     LinkError link_error(size_t link) const;
     float allowed(NodeId receiver, double bright) const;
     double measure(const SolverJob& job);
+    // What of a link is divided when it is refined.
+    enum class Part : uint8_t { none, receiver, source };
+    Part part_by_error(const Elements& elements, const Link& link, const LinkError& error) const;
+    Part part_by_ratio(const Elements& elements, const Link& link, float ratio) const;
+    struct Marks {
+        std::vector<Part> parts;      // by link
+        std::vector<uint8_t> uneven;  // by element: lamps shine on it so unevenly that it is divided
+    };
+    Marks mark(const SolverJob& job) const;
     bool refine(const SolverJob& job);
     bool is_full() const { return links_.size() + element_nodes_.size() > most_; }
     float extent(const Elements& elements, NodeId id) const;

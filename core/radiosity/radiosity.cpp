@@ -124,7 +124,7 @@ bool Radiosity::advance(uint32_t steps, const RenderEvents& events, std::atomic<
             solved_ = !solver_->step(job) && !cancelled;
         }
         if (elements_ && elements_->size() != before) vertices_.reset();  // they depend on nothing else
-        if (solved_ && statistics_.wanted > 0 && statistics_.residual > statistics_.wanted)
+        if (solved_ && statistics_.limited)
             warnings_.push_back(
                 {TRP_WARNING_MESH, TRP_NO_ID,
                  fmt::format("radiosity ended at its limit of elements and links, {} of them: its estimated error is "

@@ -29,6 +29,33 @@ TEST(RadiosityLinks, StayAsTheyAreWhereElementsMayBeSmaller) {
     EXPECT_LT(links, 6144u);
 }
 
+// Between two unit squares, each pair once; a link has its two directions.
+uint64_t links_between_squares(bool touching, float ratio, int level) {
+    Scene scene;
+    scene.object(quad({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}), wall(scene, 0.5f, 1, false));
+    if (touching)
+        scene.object(quad({0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}), wall(scene, 0.5f, 0, false));
+    else
+        scene.object(quad({0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}), wall(scene, 0.5f, 0, false));
+    char size[32];
+    std::snprintf(size, sizeof size, "%.9g", std::ldexp(1.0, -level));
+    Solution solution(scene, {{"radiosity.element_size", size}, {"radiosity.link_ratio", std::to_string(ratio)}});
+    return solution.solve().info().links / 2;
+}
+
+TEST(RadiosityLinks, BySizeAndDistanceAreAsManyAsPublished) {
+    // A link where side / distance < η, else the larger is divided: as many as were counted by hand, whatever the
+    // finest level; between squares that touch, they grow with the elements along the edge.
+    const float ratios[] = {1, 0.5f, 0.25f};
+    const uint64_t known[] = {4, 28, 304};
+    for (int k = 0; k < 3; ++k)
+        for (const int level : {4, 6}) EXPECT_EQ(links_between_squares(false, ratios[k], level), known[k]) << level;
+    EXPECT_EQ(links_between_squares(true, 0.5f, 4), 1504u);   // of 512 elements that there may be
+    EXPECT_EQ(links_between_squares(true, 0.5f, 6), 7252u);   // 8192
+    EXPECT_EQ(links_between_squares(true, 0.5f, 7), 15046u);  // 32768
+    EXPECT_EQ(links_between_squares(true, 0.5f, 8), 30712u);  // 131072
+}
+
 // A wall of side² squares.
 void add_grid(Scene& scene, uint32_t side, const Vec& corner, const Vec& x, const Vec& y, uint32_t material) {
     MeshData grid;
