@@ -101,8 +101,9 @@ void ElementTracer::batch(const ElementRay* rays, int count, std::vector<Element
                 any_special = true;
                 continue;
             }
-            const auto place = elements_.find(slot, triangle, packet.hit.u[k], packet.hit.v[k], rays[i].direction);
-            hits.push_back({rays[i].id, place.element, rays[i].weight, false, rays[i].mirrored,
+            const uint32_t element =
+                elements_.find(slot, triangle, packet.hit.u[k], packet.hit.v[k], rays[i].direction);
+            hits.push_back({rays[i].id, element, rays[i].weight, false, rays[i].mirrored,
                             rays[i].origin + rays[i].direction * packet.ray.tfar[k]});
         }
     }
@@ -132,9 +133,9 @@ void ElementTracer::go_on(const ElementRay* rays, int count, std::vector<Element
         };
         if (alpha > 0) {
             // An element's reflectance holds its alpha.
-            const auto place =
+            const uint32_t element =
                 elements_.find(points_.slot[i], points_.triangle[i], points_.b1[i], points_.b2[i], ray.direction);
-            hits.push_back({ray.id, place.element, ray.weight, false, ray.mirrored, points_.position.get(i)});
+            hits.push_back({ray.id, element, ray.weight, false, ray.mirrored, points_.position.get(i)});
         }
         Vec3 through = Vec3(1, 1, 1) * (1 - alpha);
         if (material.transmits) through += coefficients_.transmission.get(i) * alpha;

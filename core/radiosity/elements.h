@@ -96,15 +96,21 @@ class Elements {
     // Three or four corners, or those of a polygon, counter-clockwise about the element's normal.
     void corners(uint32_t element, std::vector<Vec3d>& out) const;
 
-    // The element that lies at a point of a surface, and the point's coordinates in its facet; kNoElement where that
-    // side has none.
-    struct Place {
-        uint32_t element = kNoElement;
-        float s = 0, t = 0;
+    // The facet that a triangle of a surface shows, if any, and which of its corners the triangle's are.
+    struct TriangleOf {
+        uint32_t facet = kNoElement;
+        uint8_t corners[3] = {0, 1, 2};
     };
-    Place find(uint32_t slot, uint32_t triangle, float b1, float b2, bool behind) const;
+    const TriangleOf& of_triangle(uint32_t slot, uint32_t triangle) const { return triangles_[slot][triangle]; }
+    // The coordinates in its facet, which is no polygon, of a point of a triangle.
+    std::array<float, 2> coordinates_at(const TriangleOf& of, float b1, float b2) const;
+    // By element, as Element has it.
+    const uint32_t* first_children() const { return first_children_.data(); }
+
+    // The element that lies at a point of a surface; kNoElement where that side has none. LeafLanes has it for batches.
+    uint32_t find(uint32_t slot, uint32_t triangle, float b1, float b2, bool behind) const;
     // As a ray in that direction meets it.
-    Place find(uint32_t slot, uint32_t triangle, float b1, float b2, const Vec3& direction) const {
+    uint32_t find(uint32_t slot, uint32_t triangle, float b1, float b2, const Vec3& direction) const {
         return find(slot, triangle, b1, b2, is_behind(slot, triangle, direction));
     }
     bool is_behind(uint32_t slot, uint32_t triangle, const Vec3& direction) const {
@@ -116,10 +122,6 @@ class Elements {
     void locate(const Facet& facet, float s, float t, uint32_t& triangle, float& b1, float& b2) const;
 
   private:
-    struct TriangleOf {
-        uint32_t facet = kNoElement;
-        uint8_t corners[3] = {0, 1, 2};  // of the facet
-    };
     void add_face(uint32_t slot, uint32_t face, uint32_t first_triangle, uint32_t triangle_count);
     void add_facet(Facet facet, std::span<const Vec3> corners);
     void set_grid(Facet& facet) const;
@@ -135,7 +137,7 @@ class Elements {
     std::vector<Vec3> corners_;
     std::vector<std::vector<TriangleOf>> triangles_;  // by slot
     std::vector<Element> elements_;
-    std::vector<uint32_t> first_children_;  // as elements have them, close together for find()
+    std::vector<uint32_t> first_children_;  // as elements have them, close together for those who look for leaves
     double area_ = 0;
 };
 
