@@ -168,6 +168,11 @@ const SettingRow kSettings[] = {
      "stay unshot: progressive. 0: a hundredth of the mean radiosity, and a thousandth of it unshot",
      "W/m²", "0", 0, 1e9, nullptr, "radiosity", "",
      [](Settings& s, const double* v) { s.radiosity.tolerance = static_cast<float>(*v); }},
+    {TRP_TYPE_FLOAT, "radiosity.link_ratio", "Link ratio",
+     "Hierarchical: links go between elements whose sides are less than so much of their distance, down to the element "
+     "size, whatever light they carry. 0: as the tolerance asks",
+     "", "0", 0, 1e3, nullptr, "radiosity", "",
+     [](Settings& s, const double* v) { s.radiosity.link_ratio = static_cast<float>(*v); }},
     {TRP_TYPE_INT, "radiosity.rays", "Rays", "Rays from each element into its hemisphere", "", "1024", 1, 100000000,
      nullptr, "radiosity", "", [](Settings& s, const double* v) { s.radiosity.rays = static_cast<uint32_t>(*v); }},
     {TRP_TYPE_INT, "radiosity.hemicube_resolution", "Hemicube", "Pixels along a side of the hemicube, in steps of 32",

@@ -46,6 +46,7 @@ struct RadiositySettings {
     uint32_t patch_levels = 0;  // a patch that shoots is divided so often into elements that receive
     uint32_t iterations = 0;    // at most; 0: until it is solved
     float tolerance = 0;        // W/m²; 0: a hundredth of the mean radiosity
+    float link_ratio = 0;       // of an end's side to their distance, the most in any link; 0: as the tolerance asks
     uint32_t rays = 1024;       // from each element
     uint32_t hemicube_resolution = 256;  // pixels; a multiple of 32
     Order order = Order::sorted;

@@ -11,6 +11,7 @@ namespace {
 
 constexpr uint32_t kFewestClustered = 256;  // of fewer, each pair has its links
 constexpr float kFlat = 1e-4f;              // of a cluster's radius
+constexpr size_t kMostLanes = 16;
 
 // The cone of the normals of a cluster's roots about their mean, and whether all lie in one plane.
 void set_cone(const Elements& elements, std::span<const uint32_t> roots, ElementCluster& cluster) {
@@ -65,6 +66,23 @@ NodeId make_cluster(const Elements& elements, uint32_t first, uint32_t count, El
     return number | kClusterBit;
 }
 
+void set_lanes(const Elements& elements, ElementClusters& out) {
+    const size_t room = (out.roots.size() + 2 * kMostLanes - 1) / kMostLanes * kMostLanes;
+    for (auto* lanes : {&out.places[0], &out.places[1], &out.places[2], &out.normals[0], &out.normals[1],
+                        &out.normals[2], &out.radii, &out.exposed})
+        lanes->assign(room, 0);
+    for (size_t k = 0; k < out.roots.size(); ++k) {
+        const Element& root = elements[out.roots[k]];
+        const Vec3 normal = elements.normal(out.roots[k]);
+        for (int axis = 0; axis < 3; ++axis) {
+            out.places[axis][k] = root.centre[axis];
+            out.normals[axis][k] = normal[axis];
+        }
+        out.radii[k] = elements.radius(out.roots[k]);
+        out.exposed[k] = static_cast<float>(root.exposed_area());
+    }
+}
+
 }  // namespace
 
 ElementClusters make_element_clusters(const Elements& elements) {
@@ -75,6 +93,7 @@ ElementClusters make_element_clusters(const Elements& elements) {
     make_cluster(elements, 0, elements.size(), out);
     out.areas.push_back(0);
     for (const uint32_t root : out.roots) out.areas.push_back(out.areas.back() + elements[root].area);
+    set_lanes(elements, out);
     return out;
 }
 

@@ -33,6 +33,8 @@ struct ElementClusters {
     std::vector<ElementCluster> clusters;  // children after their parents; the first holds all
     std::vector<uint32_t> roots;           // elements, cluster by cluster
     std::vector<float> areas;              // of the roots before each, and of all
+    // Of roots, in lanes with room after the last: middles, normals, radii, and the area that is not covered.
+    std::vector<float> places[3], normals[3], radii, exposed;
 
     const ElementCluster& of(NodeId cluster) const { return clusters[cluster & ~kClusterBit]; }
     // Of any node.

@@ -143,9 +143,9 @@ void ElementTracer::go_on(const ElementRay* rays, int count, std::vector<Element
         };
         if (alpha > 0) {
             // An element's reflectance holds its alpha.
-            const auto place =
+            const uint32_t element =
                 elements_.find(points.slot[i], points.triangle[i], points.b1[i], points.b2[i], ray.direction);
-            hits.push_back({ray.id, place.element, ray.weight, false, ray.mirrored, points.position.get(i)});
+            hits.push_back({ray.id, element, ray.weight, false, ray.mirrored, points.position.get(i)});
         }
         Vec3 through = Vec3(1, 1, 1) * (1 - alpha);
         if (material.transmits) through += coefficients.transmission.get(i) * alpha;

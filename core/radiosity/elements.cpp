@@ -374,12 +374,8 @@ float Elements::radius(uint32_t element) const {
     return std::sqrt(radius2);
 }
 
-Elements::Place Elements::find(uint32_t slot, uint32_t triangle, float b1, float b2, bool behind) const {
-    const TriangleOf& of = triangle_of(slot, triangle);
-    if (of.facet == kNoElement) return {};
+std::array<float, 2> Elements::coordinates_at(const TriangleOf& of, float b1, float b2) const {
     const Facet& facet = facets_[of.facet];
-    Place out{facet.roots[behind ? 1 : 0], 0, 0};
-    if (out.element == kNoElement || facet.shape == Facet::Shape::polygon) return out;
     const float b[3] = {1 - b1 - b2, b1, b2};
     float s = 0, t = 0;
     if (facet.shape == Facet::Shape::triangle) {
@@ -399,8 +395,16 @@ Elements::Place Elements::find(uint32_t slot, uint32_t triangle, float b1, float
         const Vec3 along = e1 + e3 * t;
         s = (p - e2 * t).dot(along) / std::max(along.length2(), 1e-37f);
     }
-    out.s = s = std::clamp(s, 0.0f, 1.0f);
-    out.t = t = std::clamp(t, 0.0f, 1.0f);
+    return {std::clamp(s, 0.0f, 1.0f), std::clamp(t, 0.0f, 1.0f)};
+}
+
+uint32_t Elements::find(uint32_t slot, uint32_t triangle, float b1, float b2, bool behind) const {
+    const TriangleOf& of = of_triangle(slot, triangle);
+    if (of.facet == kNoElement) return kNoElement;
+    const Facet& facet = facets_[of.facet];
+    uint32_t out = facet.roots[behind ? 1 : 0];
+    if (out == kNoElement || facet.shape == Facet::Shape::polygon) return out;
+    const auto [s, t] = coordinates_at(of, b1, b2);
 
     const auto cell_at = [](float x, uint32_t count) {
         return std::min(static_cast<uint32_t>(x * static_cast<float>(count)), count - 1);
@@ -410,23 +414,23 @@ Elements::Place Elements::find(uint32_t slot, uint32_t triangle, float b1, float
     float u = s * static_cast<float>(facet.across), v = t * static_cast<float>(facet.up);
     if (quad) {
         const uint32_t column = cell_at(s, facet.across), row = cell_at(t, facet.up);
-        out.element += row * facet.across + column;
+        out += row * facet.across + column;
         u -= static_cast<float>(column), v -= static_cast<float>(row);
     } else {
         const uint32_t n = facet.across, row = cell_at(t, n), left = n - row,
                        column = std::min(static_cast<uint32_t>(u), left - 1);
         u -= static_cast<float>(column), v -= static_cast<float>(row);
         const bool turned = column + 1 < left && u + v > 1;
-        out.element += n * n - left * left + 2 * column + turned;
+        out += n * n - left * left + 2 * column + turned;
         if (turned) u = 1 - u, v = 1 - v;
     }
-    while (first_children_[out.element] != kNoElement) {
+    while (first_children_[out] != kNoElement) {
         uint32_t child;
         if (quad)
             child = (u >= 0.5f) + 2 * (v >= 0.5f);
         else
             child = u >= 0.5f ? 1 : v >= 0.5f ? 2 : u + v > 0.5f ? 3 : 0;
-        out.element = first_children_[out.element] + child;
+        out = first_children_[out] + child;
         u = 2 * u - static_cast<float>(child % 2), v = 2 * v - static_cast<float>(child / 2);
         if (!quad && child == 3) u = -u, v = -v;
     }

@@ -97,26 +97,8 @@ class Elements {
     // Three or four corners, or those of a polygon, counter-clockwise about the element's normal.
     void corners(uint32_t element, std::vector<Vec3d>& out) const;
 
-    // The element that lies at a point of a surface, and the point's coordinates in its facet; kNoElement where that
-    // side has none.
-    struct Place {
-        uint32_t element = kNoElement;
-        float s = 0, t = 0;
-    };
-    Place find(uint32_t slot, uint32_t triangle, float b1, float b2, bool behind) const;
-    // As a ray in that direction meets it.
-    Place find(uint32_t slot, uint32_t triangle, float b1, float b2, const Vec3& direction) const {
-        return find(slot, triangle, b1, b2, is_behind(slot, triangle, direction));
-    }
-    bool is_behind(uint32_t slot, uint32_t triangle, const Vec3& direction) const {
-        const uint32_t facet = triangle_of(slot, triangle).facet;
-        return facet != kNoElement && facets_[facet].normal.dot(direction) > 0;
-    }
-    // And the triangle of the surface, with its barycentrics, that shows a point of a facet; of a polygon, which has no
-    // coordinates, one that is uniform in area where s and t are.
-    void locate(const Facet& facet, float s, float t, uint32_t& triangle, float& b1, float& b2) const;
-
-    // What find_elements() reads, until there are other elements or sides.
+    // The facet that a triangle of a surface shows, if any, which of its corners the triangle's are, and what
+    // find_elements() is to know of both, until there are other elements or sides.
     struct TriangleOf {
         enum Flag : uint8_t {
             kTriangle = 1,  // the facet is one
@@ -125,7 +107,7 @@ class Elements {
             kPassBehind = 8,
         };
         uint32_t facet = kNoElement;
-        uint8_t corners[3] = {0, 1, 2};  // of the facet
+        uint8_t corners[3] = {0, 1, 2};
         uint8_t flags = 0;
         // The facet's.
         Vec3 normal{0, 0, 0};
@@ -133,6 +115,13 @@ class Elements {
         uint32_t roots[2] = {kNoElement, kNoElement};
         float twist[2] = {0, 0};  // of a quad: what its third corner has more than the parallelogram's, in its sides
     };
+    const TriangleOf& of_triangle(uint32_t slot, uint32_t triangle) const {
+        return triangles_[size_t{first_triangles_[slot]} + triangle];
+    }
+    // The coordinates in its facet, which is no polygon, of a point of a triangle.
+    std::array<float, 2> coordinates_at(const TriangleOf& of, float b1, float b2) const;
+    // By element, as Element has it.
+    const uint32_t* first_children() const { return first_children_.data(); }
     struct Lookup {
         const TriangleOf* triangles;
         const uint32_t* first_triangles;  // by slot
@@ -142,10 +131,21 @@ class Elements {
         return {triangles_.data(), first_triangles_.data(), divided_ ? first_children_.data() : nullptr};
     }
 
-  private:
-    const TriangleOf& triangle_of(uint32_t slot, uint32_t triangle) const {
-        return triangles_[size_t{first_triangles_[slot]} + triangle];
+    // The element that lies at a point of a surface; kNoElement where that side has none. LeafLanes has it for batches.
+    uint32_t find(uint32_t slot, uint32_t triangle, float b1, float b2, bool behind) const;
+    // As a ray in that direction meets it.
+    uint32_t find(uint32_t slot, uint32_t triangle, float b1, float b2, const Vec3& direction) const {
+        return find(slot, triangle, b1, b2, is_behind(slot, triangle, direction));
     }
+    bool is_behind(uint32_t slot, uint32_t triangle, const Vec3& direction) const {
+        const uint32_t facet = of_triangle(slot, triangle).facet;
+        return facet != kNoElement && facets_[facet].normal.dot(direction) > 0;
+    }
+    // And the triangle of the surface, with its barycentrics, that shows a point of a facet; of a polygon, which has no
+    // coordinates, one that is uniform in area where s and t are.
+    void locate(const Facet& facet, float s, float t, uint32_t& triangle, float& b1, float& b2) const;
+
+  private:
     void add_face(uint32_t slot, uint32_t face, uint32_t first_triangle, uint32_t triangle_count);
     void add_facet(Facet facet, std::span<const Vec3> corners);
     void tell_triangles(uint32_t facet);
@@ -162,7 +162,7 @@ class Elements {
     std::vector<Vec3> corners_;
     std::vector<TriangleOf> triangles_;  // slot by slot
     std::vector<Element> elements_;
-    std::vector<uint32_t> first_children_;  // as elements have them, close together
+    std::vector<uint32_t> first_children_;  // as elements have them, close together for those who look for leaves
     double area_ = 0;
     std::vector<uint32_t> first_triangles_;  // by slot
     bool divided_ = false;                   // an element is

@@ -95,10 +95,10 @@ void draw_hemicube_face(const FormFactorJob& job, uint32_t i, int face, std::vec
                         any_left = true;
                 }
                 if (!shows) continue;
-                const auto place = elements.find(points.slot[lane], points.triangle[lane], points.b1[lane],
-                                                 points.b2[lane], w->directions.get(lane));
+                const uint32_t element = elements.find(points.slot[lane], points.triangle[lane], points.b1[lane],
+                                                       points.b2[lane], w->directions.get(lane));
                 const auto [px, py] = pixel_of_lane(lane);
-                if (place.element != kNoElement) out.push_back({x + px, y + py, place.element, weight});
+                if (element != kNoElement) out.push_back({x + px, y + py, element, weight});
             }
         }
     }

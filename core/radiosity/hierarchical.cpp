@@ -57,12 +57,12 @@ bool HierarchicalSolver::begin(const SolverJob& job) {
     job.solution.slopes.assign(elements.size(), {});
     measure(job);
     std::vector<Link> links = first_links(elements);
-    for (Link& link : links) link.allowed = allowed(link);
+    for (Link& link : links) link.allowed = allowed(link.receiver, brightness(node(link.source).radiosity.mean));
     evaluate(job, links);
     mirrors_.add(job.lighting(), 0, job.solution.light);
     if (job.cancelled) return false;
     links_ = std::move(links);
-    most_ = std::max(kMostLinks, 4 * size_t{elements.size()});
+    most_ = std::max(kMostLinks, 8 * size_t{elements.size()});
     begun_ = true;
     return true;
 }
@@ -73,14 +73,27 @@ void HierarchicalSolver::evaluate(const SolverJob& job, std::vector<Link>& links
         for (size_t chunk = begin; chunk < end && !job.cancelled; ++chunk) {
             const size_t first = chunk * kLinkGrain, count = std::min(kLinkGrain, links.size() - first);
             job.statistics.rays += evaluator->evaluate({&links[first], count});
+            static int shown = 0;
+            for (size_t k = first; k < first + count; ++k) {
+                const Link& l = links[k];
+                if (!(l.spread + l.chance + l.share + l.hidden + l.transfer[0] + l.transfer[8] + l.tint.x < 1e30f) &&
+                    ++shown < 10)
+                    fprintf(stderr,
+                            "%x %x spread %g chance %g seen %g hidden %g t %g tint %g unres %g agreed %g allowed %g "
+                            "areas %g %g\n",
+                            l.receiver, l.source, l.spread, l.chance, l.share, l.hidden, l.transfer[0], l.tint.x,
+                            l.unresolved, l.agreed, l.allowed, clusters_.area(job.elements, l.receiver),
+                            clusters_.area(job.elements, l.source));
+            }
         }
     });
 }
 
 bool HierarchicalSolver::step(const SolverJob& job) {
+    const bool by_error = job.settings.radiosity.link_ratio == 0;
     if (!begun_) {
         if (!begin(job)) return true;
-    } else if (job.statistics.residual <= tolerance_ || is_full() || !refine(job)) {
+    } else if ((by_error && job.statistics.residual <= tolerance_) || is_full() || !refine(job)) {
         return job.cancelled;
     }
     solve(job);
@@ -88,7 +101,9 @@ bool HierarchicalSolver::step(const SolverJob& job) {
     job.statistics.links = links_.size();
     job.statistics.residual = std::sqrt(measure(job));
     job.statistics.wanted = tolerance_;
-    return job.statistics.residual > tolerance_ && !is_full();
+    const bool done = by_error && job.statistics.residual <= tolerance_;
+    job.statistics.limited = is_full() && !done;
+    return !done && !is_full();
 }
 
 void HierarchicalSolver::links(const Elements& elements, std::vector<ElementLink>& out) const {

@@ -1,13 +1,13 @@
 // Hierarchical radiosity (Hanrahan, Salzman and Aupperle, "A Rapid Hierarchical Radiosity Algorithm", 1991): light goes
 // over links between nodes of quad-trees, each as high up as the tolerance allows, and clusters above them.
 //
-// Light is linear over elements (Linear). A link's error is what no line follows of its irradiance over the receiver
-// and of the source's radiosity within it, for clusters what differs between points of theirs, and what chance may have
-// done; times the receiver's reflectance. The squares of all errors that come to an element are added up, and over the
-// scene weighed by area. That is an estimate of the solution's error, in W/m², and each step refines the links that
-// have more than an equal share of what the tolerance allows, along with the elements on which lamps shine unevenly,
-// until it is below the tolerance. As light is gathered between the steps, links are refined for what they carry then
-// (multigridding).
+// Light is linear over elements (Linear); of clusters each root gets and gives its own (cluster_light.h). A link's
+// error is what no line follows of its irradiance over the receiver and of the source's radiosity within it, for
+// clusters what one point for all of the source leaves out, and what chance may have done; times the receiver's
+// reflectance. The squares of all errors that come to an element are added up, and over the scene weighed by area. That
+// is an estimate of the solution's error, in W/m², and each step refines the links that have more than an equal share
+// of what the tolerance allows, along with the elements on which lamps shine unevenly, until it is below the tolerance.
+// As light is gathered between the steps, links are refined for what they carry then (multigridding).
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ namespace trp {
 
 inline constexpr double kUnevenness = 0.5;  // of a lamp's light over an element, what is left as an error
 inline constexpr size_t kLinkGrain = 1024;  // links that a thread takes at a time
-// Links and elements; then the solution is left as it is, and its residual says how good. Four times the elements that
+// Links and elements; then the solution is left as it is, and its residual says how good. Eight times the elements that
 // it begins with, where that is more.
 inline constexpr size_t kMostLinks = 1 << 19;
 
@@ -32,11 +32,7 @@ class HierarchicalSolver : public Solver {
     std::vector<uint64_t> links_to(const Elements& elements, uint32_t leaf) const override {
         return links_to_leaf({elements, clusters_, links_}, leaf);
     }
-    std::vector<double> row_sums(const Elements& elements) const override {
-        return link_sums({elements, clusters_, links_}, [&](uint32_t i) {
-            return std::array{element_nodes_[i].x, element_nodes_[i].y};
-        });
-    }
+    std::vector<double> row_sums(const Elements&) const override { return sums_; }
 
   private:
     struct Node {
@@ -55,7 +51,11 @@ class HierarchicalSolver : public Solver {
     std::vector<Link> first_links(const Elements& elements) const;
     void evaluate(const SolverJob& job, std::vector<Link>& links) const;
     void solve(const SolverJob& job);
-    void gather();
+    void gather(const Elements& elements);
+    void find_sums(const Elements& elements);
+    void light_clusters(const Elements& elements);
+    float shown(NodeId source, const NodeLight& light) const;
+    NodeLight light_of_link(const Elements& elements, const Link& link) const;
     // Of nodes above, as Node has them.
     struct ErrorAbove {
         double squares = 0, coherent = 0;
@@ -71,9 +71,18 @@ class HierarchicalSolver : public Solver {
             return (over_receiver + within_source) * (over_receiver + within_source) + chance * chance;
         }
     };
-    LinkError link_error(const Link& link) const;
-    float allowed(const Link& link) const;
+    LinkError link_error(size_t link) const;
+    float allowed(NodeId receiver, double bright) const;
     double measure(const SolverJob& job);
+    // What of a link is divided when it is refined.
+    enum class Part : uint8_t { none, receiver, source };
+    Part part_by_error(const Elements& elements, const Link& link, const LinkError& error) const;
+    Part part_by_ratio(const Elements& elements, const Link& link, float ratio) const;
+    struct Marks {
+        std::vector<Part> parts;      // by link
+        std::vector<uint8_t> uneven;  // by element: lamps shine on it so unevenly that it is divided
+    };
+    Marks mark(const SolverJob& job) const;
     bool refine(const SolverJob& job);
     bool is_full() const { return links_.size() + element_nodes_.size() > most_; }
     float extent(const Elements& elements, NodeId id) const;
@@ -93,9 +102,14 @@ class HierarchicalSolver : public Solver {
 
     ElementClusters clusters_;
     std::vector<Node> cluster_nodes_, element_nodes_;
-    std::vector<NodeId> tops_;        // of the hierarchy
-    std::vector<Link> links_;         // by receiver
-    std::vector<size_t> first_link_;  // by place of the receiver, and the end
+    std::vector<NodeId> tops_;            // of the hierarchy
+    std::vector<Link> links_;             // by receiver
+    std::vector<size_t> first_link_;      // by place of the receiver, and the end
+    std::vector<float> brightness_;       // by link, of what its source shows to its receiver
+    std::vector<NodeLight> to_clusters_;  // by link, of the first ones
+    std::vector<double> sums_;            // by element, of leaves the sums of their form factors
+    RootColors root_colors_;
+    RootLight root_light_;
     MirrorRows mirrors_;
     std::vector<Vec3d> mirrored_;  // irradiance by mirrors, by element
     float least_area_ = 0;

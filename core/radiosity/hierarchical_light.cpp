@@ -1,6 +1,7 @@
 // Light over the links of the hierarchy, down to its leaves and up again.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/parallel.h"
 #include "radiosity/hierarchical.h"
@@ -9,37 +10,113 @@ namespace trp {
 namespace {
 
 constexpr uint32_t kMostSweeps = 500;
+constexpr double kMostSum = 1.5;      // of an element's form factors; links that say more would make light of nothing
+constexpr double kUnfinished = 0.02;  // of the tolerance, what a sweep may still have changed
+constexpr size_t kRootGrain = 1024;   // roots that a thread takes at a time
 
 }  // namespace
 
-void HierarchicalSolver::gather() {
-    const auto gather_node = [&](NodeId id) {
-        const size_t at = place(id);
-        Linear sum;
-        for (size_t l = first_link_[at]; l < first_link_[at + 1]; ++l) {
-            const Link& link = links_[l];
-            const Linear& source = node(link.source).radiosity;
-            const Vec3d tint(link.tint);
-            Vec3d* const rows[3] = {&sum.mean, &sum.x, &sum.y};
-            for (size_t r = 0; r < 3; ++r)
-                *rows[r] += tint * (source.mean * static_cast<double>(link.transfer[3 * r]) +
-                                    source.x * static_cast<double>(link.transfer[3 * r + 1]) +
-                                    source.y * static_cast<double>(link.transfer[3 * r + 2]));
+// What leaves the source of a link that has a cluster at an end.
+NodeLight HierarchicalSolver::light_of_link(const Elements& elements, const Link& link) const {
+    const Vec3 way = clusters_.centre(elements, link.receiver) - clusters_.centre(elements, link.source);
+    NodeLight out = is_cluster(link.source) ? light_of(clusters_, link.source, &root_colors_, way.normalized())
+                                            : light_of(elements, link.source, node(link.source).radiosity.mean);
+    out.room += link.room;
+    return out;
+}
+
+// The brightness that a link's error is for: parts may show themselves that do not from the middle of the receiver.
+float HierarchicalSolver::shown(NodeId source, const NodeLight& light) const {
+    return std::max(light.mean, static_cast<float>(brightness(node(source).radiosity.mean)));
+}
+
+// Links to clusters, which are the first ones, to the roots of those.
+void HierarchicalSolver::light_clusters(const Elements& elements) {
+    const std::vector<ElementCluster>& clusters = clusters_.clusters;
+    if (clusters.empty()) return;
+    root_colors_.resize(clusters_);
+    root_light_.clear(clusters_);
+    for (size_t k = 0; k < clusters_.roots.size(); ++k)
+        root_colors_.set(k, element_nodes_[clusters_.roots[k]].radiosity.mean);
+    to_clusters_.resize(first_link_[clusters.size()]);
+    parallel_ranges(to_clusters_.size(), 64, [&](size_t begin, size_t end) {
+        for (size_t l = begin; l < end; ++l) {
+            to_clusters_[l] = light_of_link(elements, links_[l]);
+            brightness_[l] = shown(links_[l].source, to_clusters_[l]);
         }
-        node(id).gathered = sum;
-    };
-    parallel_ranges(cluster_nodes_.size(), 256, [&](size_t begin, size_t end) {
-        for (size_t k = begin; k < end; ++k) gather_node(static_cast<NodeId>(k) | kClusterBit);
     });
+    parallel_ranges((clusters_.roots.size() + kRootGrain - 1) / kRootGrain, 1, [&](size_t begin, size_t end) {
+        const auto low = static_cast<uint32_t>(begin * kRootGrain),
+                   high = static_cast<uint32_t>(std::min(end * kRootGrain, clusters_.roots.size()));
+        for (size_t k = 0; k < clusters.size(); ++k) {
+            const uint32_t first = std::max(clusters[k].first_root, low),
+                           last = std::min(clusters[k].first_root + clusters[k].root_count, high);
+            for (size_t l = first_link_[k]; l < first_link_[k + 1] && first < last; ++l)
+                receive(clusters_, to_clusters_[l], links_[l].tint * links_[l].share, first, last, root_light_);
+        }
+    });
+}
+
+void HierarchicalSolver::gather(const Elements& elements) {
+    brightness_.resize(links_.size());
+    light_clusters(elements);
     mirrored_.resize(element_nodes_.size());
     parallel_ranges(element_nodes_.size(), 256, [&](size_t begin, size_t end) {
-        for (size_t k = begin; k < end; ++k) {
-            gather_node(static_cast<NodeId>(k));
-            mirrored_[k] = mirrors_.irradiance(static_cast<uint32_t>(k), [&](uint32_t source) -> const Vec3d& {
-                return element_nodes_[source].radiosity.mean;
-            });
+        for (auto k = static_cast<uint32_t>(begin); k < end; ++k) {
+            Linear sum;
+            const PlaneAxes axes = axes_of(elements.facet_of(k));
+            const size_t at = place(k);
+            for (size_t l = first_link_[at]; l < first_link_[at + 1]; ++l) {
+                const Link& link = links_[l];
+                const Vec3d tint(link.tint);
+                Vec3d* const rows[3] = {&sum.mean, &sum.x, &sum.y};
+                if (is_cluster(link.source)) {
+                    const NodeLight light = light_of_link(elements, link);
+                    brightness_[l] = shown(link.source, light);
+                    const Linear here = receive(elements, k, light, axes);
+                    const Vec3d* const values[3] = {&here.mean, &here.x, &here.y};
+                    for (size_t r = 0; r < 3; ++r) *rows[r] += tint * *values[r] * static_cast<double>(link.share);
+                    continue;
+                }
+                const Linear& source = node(link.source).radiosity;
+                brightness_[l] = static_cast<float>(brightness(source.mean));
+                for (size_t r = 0; r < 3; ++r)
+                    *rows[r] += tint * (source.mean * static_cast<double>(link.transfer[3 * r]) +
+                                        source.x * static_cast<double>(link.transfer[3 * r + 1]) +
+                                        source.y * static_cast<double>(link.transfer[3 * r + 2]));
+            }
+            element_nodes_[k].gathered = sum;
+            mirrored_[k] = mirrors_.irradiance(
+                k, [&](uint32_t source) -> const Vec3d& { return element_nodes_[source].radiosity.mean; });
         }
     });
+    parallel_ranges(clusters_.roots.size(), 1024, [&](size_t begin, size_t end) {
+        for (size_t k = begin; k < end; ++k) {
+            const uint32_t root = clusters_.roots[k];
+            element_nodes_[root].gathered += root_light_.at(k, axes_of(elements.facet_of(root)));
+        }
+    });
+}
+
+// What would arrive at each leaf from a radiosity of 1 everywhere.
+void HierarchicalSolver::find_sums(const Elements& elements) {
+    std::vector<Linear> kept;
+    for (Node& n : element_nodes_) kept.push_back(std::exchange(n.radiosity, {{1, 1, 1}}));
+    gather(elements);
+    sums_.assign(elements.size(), 0);
+    std::vector<Linear> above(elements.size());
+    for (uint32_t i = 0; i < elements.size(); ++i) {  // wholes are before their parts
+        element_nodes_[i].radiosity = kept[i];
+        Linear& all = above[i];
+        all += element_nodes_[i].gathered;
+        sums_[i] = brightness(all.mean);
+        for (uint32_t k = 0; k < 4 && !elements[i].leaf(); ++k) {
+            const uint32_t child = elements[i].first_child + k;
+            const Node& part = element_nodes_[child];
+            above[child] = {all.mean + all.x * static_cast<double>(part.x) + all.y * static_cast<double>(part.y), all.x,
+                            all.y};
+        }
+    }
 }
 
 // The nodes of elements that have none yet.
@@ -74,6 +151,10 @@ void HierarchicalSolver::set_leaf(const SolverJob& job, uint32_t leaf, Linear ar
     Solution& solution = job.solution;
     const ElementLight& light = solution.light[leaf];
     Node& n = element_nodes_[leaf];
+    if (leaf < sums_.size() && sums_[leaf] > kMostSum) {
+        const double share = kMostSum / sums_[leaf];
+        arriving.mean *= share, arriving.x *= share, arriving.y *= share;
+    }
     if (leaf < mirrored_.size()) arriving.mean += mirrored_[leaf];
     // Lines of coarse elements may fall below 0 at a part's middle.
     for (int c = 0; c < 3; ++c) arriving.mean[c] = std::max(arriving.mean[c], 0.0);
@@ -167,16 +248,18 @@ void HierarchicalSolver::solve(const SolverJob& job) {
     for (const Link& link : links_) sorted[next[place(link.receiver)]++] = link;
     links_.swap(sorted);
 
+    find_sums(job.elements);
     double before = -1;
     for (uint32_t sweep = 0; sweep < kMostSweeps && !job.cancelled; ++sweep) {
-        gather();
-        double now = 0;
+        gather(job.elements);
+        double now = 0, area = 0;
         for (const NodeId top : tops_) {
             push_pull(job, top, {}, {});
-            const double area = clusters_.area(job.elements, top);
-            now += area * brightness(node(top).radiosity.mean);
+            const double own = clusters_.area(job.elements, top);
+            now += own * brightness(node(top).radiosity.mean);
+            area += own;
         }
-        if (std::abs(now - before) <= 1e-6 * now) break;
+        if (std::abs(now - before) <= std::max(1e-6 * now, kUnfinished * tolerance_ * area)) break;
         before = now;
     }
 }

@@ -25,18 +25,17 @@ double least_share(std::vector<double> shares, double allowed) {
 
 }  // namespace
 
-HierarchicalSolver::LinkError HierarchicalSolver::link_error(const Link& link) const {
-    const Node& source = node(link.source);
-    const double within = luminance(link.factor()) * std::sqrt(static_cast<double>(source.variance));
-    return {static_cast<double>(link.spread) * brightness(source.radiosity.mean), within,
-            kCoherent * within * static_cast<double>(link.hidden),
-            static_cast<double>(link.chance) * brightness(source.radiosity.mean)};
+HierarchicalSolver::LinkError HierarchicalSolver::link_error(size_t number) const {
+    const Link& link = links_[number];
+    const double within = luminance(link.factor()) * std::sqrt(static_cast<double>(node(link.source).variance));
+    const auto bright = static_cast<double>(brightness_[number]);
+    return {static_cast<double>(link.spread) * bright, within * static_cast<double>(link.unresolved),
+            kCoherent * within * static_cast<double>(link.hidden), static_cast<double>(link.chance) * bright};
 }
 
 // What chance may do to the factor of a link, or of those that take its place.
-float HierarchicalSolver::allowed(const Link& link) const {
-    const double carried =
-        brightness(node(link.source).radiosity.mean) * static_cast<double>(node(link.receiver).reflectance);
+float HierarchicalSolver::allowed(NodeId receiver, double bright) const {
+    const double carried = bright * static_cast<double>(node(receiver).reflectance);
     return static_cast<float>(kChance * tolerance_ / std::max(carried, 1e-30));
 }
 
@@ -44,8 +43,9 @@ float HierarchicalSolver::allowed(const Link& link) const {
 double HierarchicalSolver::measure(const SolverJob& job) {
     for (auto* nodes : {&cluster_nodes_, &element_nodes_})
         for (Node& n : *nodes) n.own_error = n.own_coherent = 0;
-    for (const Link& link : links_) {
-        const LinkError error = link_error(link);
+    for (size_t l = 0; l < links_.size(); ++l) {
+        const LinkError error = link_error(l);
+        const Link& link = links_[l];
         node(link.receiver).own_error += static_cast<float>(error.squares());
         node(link.receiver).own_coherent += static_cast<float>(error.coherent);
     }
@@ -63,67 +63,95 @@ double HierarchicalSolver::measure(const SolverJob& job) {
     return area > 0 ? sum / area : 0;
 }
 
-// The links and leaves that the error is mostly owed to. Returns whether there were any.
-bool HierarchicalSolver::refine(const SolverJob& job) {
-    Elements& elements = job.elements;
-    const auto area_of = [&](NodeId id) { return static_cast<double>(clusters_.area(elements, id)); };
-    const uint32_t old_size = elements.size();
-    // What to do about a link: divide its receiver or its source, whichever its error is owed to and can be divided.
-    enum class Part : uint8_t { none, receiver, source };
-    const auto part_of = [&](const Link& link, const LinkError& error) {
-        const bool receiver = is_cluster(link.receiver), source = is_cluster(link.source);
-        if (receiver || source)
-            return receiver && (!source || extent(elements, link.receiver) >= extent(elements, link.source))
-                       ? Part::receiver
-                       : Part::source;
-        const bool receivers = !elements[link.receiver].leaf() || may_divide(elements, link.receiver),
-                   sources = !elements[link.source].leaf();
-        if (!receivers && !sources) return Part::none;
-        return receivers && (!sources || error.over_receiver >= error.within_source + error.coherent + error.chance)
+// What to do about a link: divide its receiver or its source, whichever its error is owed to and can be divided.
+HierarchicalSolver::Part HierarchicalSolver::part_by_error(const Elements& elements, const Link& link,
+                                                           const LinkError& error) const {
+    const bool receiver = is_cluster(link.receiver), source = is_cluster(link.source);
+    if (receiver || source)
+        return receiver && (!source || extent(elements, link.receiver) >= extent(elements, link.source))
                    ? Part::receiver
                    : Part::source;
-    };
-    std::vector<Part> parts(links_.size(), Part::none);
-    std::vector<double> shares(links_.size() + old_size, 0.0);
+    const bool receivers = !elements[link.receiver].leaf() || may_divide(elements, link.receiver),
+               sources = !elements[link.source].leaf();
+    if (!receivers && !sources) return Part::none;
+    return receivers && (!sources || error.over_receiver >= error.within_source + error.coherent + error.chance)
+               ? Part::receiver
+               : Part::source;
+}
+
+// Or the larger one, where its side is not less than a share of the distance.
+HierarchicalSolver::Part HierarchicalSolver::part_by_ratio(const Elements& elements, const Link& link,
+                                                           float ratio) const {
+    const float to = extent(elements, link.receiver), from = extent(elements, link.source);
+    const NodeId larger = to >= from ? link.receiver : link.source;
+    const Vec3d way(clusters_.centre(elements, link.source) - clusters_.centre(elements, link.receiver));
+    if (std::max(to, from) < ratio * way.length()) return Part::none;
+    if (!is_cluster(larger) && elements[larger].leaf() && !may_divide(elements, larger)) return Part::none;
+    return larger == link.receiver ? Part::receiver : Part::source;
+}
+
+// The links and leaves to be refined: those that the error is mostly owed to, or all links that are too wide.
+HierarchicalSolver::Marks HierarchicalSolver::mark(const SolverJob& job) const {
+    const Elements& elements = job.elements;
+    const auto area_of = [&](NodeId id) { return static_cast<double>(clusters_.area(elements, id)); };
+    const float ratio = job.settings.radiosity.link_ratio;
+    Marks out{std::vector<Part>(links_.size(), Part::none), std::vector<uint8_t>(elements.size(), 0)};
+    std::vector<double> shares(links_.size() + elements.size(), 0.0);
     parallel_ranges(links_.size(), kLinkGrain, [&](size_t begin, size_t end) {
         for (size_t l = begin; l < end; ++l) {
             const Link& link = links_[l];
+            if (ratio > 0) {
+                out.parts[l] = part_by_ratio(elements, link, ratio);
+                continue;
+            }
             const Node& to = node(link.receiver);
-            const LinkError error = link_error(link);
-            parts[l] = part_of(link, error);
-            if (parts[l] != Part::none)
+            const LinkError error = link_error(l);
+            out.parts[l] = part_by_error(elements, link, error);
+            if (out.parts[l] != Part::none)
                 shares[l] = (error.squares() + error.coherent * static_cast<double>(to.coherent)) *
                             static_cast<double>(to.reflectance * to.reflectance) * area_of(link.receiver);
         }
     });
+    if (ratio > 0) return out;
     double* const uneven = &shares[links_.size()];
-    for (uint32_t i = 0; i < old_size; ++i)
+    for (uint32_t i = 0; i < elements.size(); ++i)
         if (elements[i].leaf() && may_divide(elements, i)) {
             const double error =
                 kUnevenness * static_cast<double>(job.solution.light[i].unevenness * element_nodes_[i].reflectance);
             uneven[i] = error * error * area_of(i);
         }
     const double least = least_share(shares, tolerance_ * tolerance_ * elements.area());
+    for (size_t l = 0; l < links_.size(); ++l)
+        if (!(shares[l] >= least)) out.parts[l] = Part::none;
+    for (uint32_t i = 0; i < elements.size(); ++i) out.uneven[i] = uneven[i] >= least;
+    return out;
+}
+
+// Returns whether there was anything to refine.
+bool HierarchicalSolver::refine(const SolverJob& job) {
+    Elements& elements = job.elements;
+    const uint32_t old_size = elements.size();
+    const Marks marks = mark(job);
 
     // Elements are divided in their order and in that of the links, by one thread: their numbers are always the same.
     std::vector<Link> kept, fresh;
     kept.reserve(links_.size());
     for (uint32_t i = 0; i < old_size; ++i)
-        if (uneven[i] >= least) elements.divide(i);
+        if (marks.uneven[i]) elements.divide(i);
     for (size_t l = 0; l < links_.size(); ++l) {
         const Link& link = links_[l];
-        if (!(shares[l] >= least)) {
+        if (marks.parts[l] == Part::none) {
             kept.push_back(link);
             continue;
         }
-        const bool by_receiver = parts[l] == Part::receiver;
+        const bool by_receiver = marks.parts[l] == Part::receiver;
         const NodeId split = by_receiver ? link.receiver : link.source;
         if (!is_cluster(split) && elements[split].leaf()) elements.divide(split);
         const Children below = children(elements, split);
         for (const NodeId part : std::span(below.ids, below.count)) {
             Link next{by_receiver ? part : link.receiver, by_receiver ? link.source : part};
             next.agreed = link.agreed / static_cast<float>(below.count);
-            next.allowed = allowed(link);
+            next.allowed = allowed(link.receiver, static_cast<double>(brightness_[l]));
             if (clusters_.may_see(elements, next.receiver, next.source)) fresh.push_back(next);
         }
     }

@@ -35,15 +35,17 @@ uint64_t LinkEvaluator::evaluate(std::span<Link> links) {
     return rays;
 }
 
+LinkEvaluator::Place LinkEvaluator::place_of(uint32_t root) const {
+    return {elements_[root].centre,    elements_.normal(root), elements_.facet_of(root).slot, 0, 0,
+            elements_[root].exposed(), elements_[root]};
+}
+
 // The middles of an element's quarters, or of four roots of a cluster by area.
 LinkEvaluator::Places LinkEvaluator::places_of(NodeId node) const {
     Places out;
     if (is_cluster(node)) {
-        for (uint32_t k = 0; k < kLinkPoints; ++k) {
-            const uint32_t root = clusters_.root_at(clusters_.of(node), (static_cast<float>(k) + 0.5f) / kLinkPoints);
-            out[k] = {elements_[root].centre, elements_.normal(root), elements_.facet_of(root).slot, 0, 0, 1,
-                      elements_[root]};
-        }
+        for (uint32_t k = 0; k < kLinkPoints; ++k)
+            out[k] = place_of(clusters_.root_at(clusters_.of(node), (static_cast<float>(k) + 0.5f) / kLinkPoints));
         return out;
     }
     const Facet& facet = elements_.facet_of(node);
@@ -81,67 +83,42 @@ LinkEvaluator::Places LinkEvaluator::places_of(NodeId node) const {
     return out;
 }
 
-// The form factor from a point to a source, with nothing between them.
-double LinkEvaluator::factor_at(const Place& place, const Places& sources, NodeId source) {
-    if (!is_cluster(source)) {
-        // Rounding lifts points of one plane over it.
-        const float height = (place.point - elements_[source].centre).dot(elements_.normal(source));
-        if (!(height > 2 * clearance(place.point))) return 0;
-        if (polygon_of_ != source) elements_.corners(polygon_of_ = source, polygon_);
-        return point_to_polygon(Vec3d(place.point), Vec3d(place.normal), polygon_);
-    }
-    const float area = clusters_.of(source).area / kLinkPoints;  // that a point stands for
-    double sum = 0;
-    for (const Place& of : sources) {
-        const Vec3 way = of.point - place.point;
-        const float d2 = std::max(way.length2(), 1e-37f);
-        const float cosines = std::max(way.dot(place.normal), 0.0f) * std::max(-way.dot(of.normal), 0.0f) / d2;
-        // Never more than a half space full of it.
-        sum += static_cast<double>(cosines) / (std::numbers::pi * static_cast<double>(d2) + static_cast<double>(area));
-    }
-    return sum * static_cast<double>(area);
+// The form factor from a point to an element, with nothing between them.
+double LinkEvaluator::factor_at(const Place& place, uint32_t source) {
+    // Rounding lifts points of one plane over it.
+    const float height = (place.point - elements_[source].centre).dot(elements_.normal(source));
+    if (!(height > 2 * clearance(place.point))) return 0;
+    if (polygon_of_ != source) elements_.corners(polygon_of_ = source, polygon_);
+    return point_to_polygon(Vec3d(place.point), Vec3d(place.normal), polygon_);
 }
 
-// A bound whatever way the surfaces of a cluster are turned: a source that fills as much of the sky as it can.
-float LinkEvaluator::greatest_factor(const Link& link) const {
-    const NodeId receiver = link.receiver, source = link.source;
-    const float gap = (clusters_.centre(elements_, source) - clusters_.centre(elements_, receiver)).length() -
-                      clusters_.radius(elements_, receiver) - clusters_.radius(elements_, source),
-                area = clusters_.area(elements_, source);
-    return gap > 0 ? std::min(1.0f, area / (std::numbers::pi_v<float> * gap * gap)) : 1;
+double LinkEvaluator::distance(const Link& link) const {
+    const Vec3 way = clusters_.centre(elements_, link.source) - clusters_.centre(elements_, link.receiver);
+    return std::max(way.length(), 1e-37f);
 }
 
-// What surfaces that are turned this way and that get differs, and so does what they give, the more the larger they are
-// for their distance.
-double LinkEvaluator::cluster_error(const Link& link, const double (&arriving)[kLinkPoints][3], double mean) const {
-    double squares = 0;
-    for (const auto& point : arriving) squares += (point[0] - mean) * (point[0] - mean) / (kLinkPoints - 1);
-    const float distance =
-                    (clusters_.centre(elements_, link.source) - clusters_.centre(elements_, link.receiver)).length(),
-                size = clusters_.radius(elements_, link.receiver) + clusters_.radius(elements_, link.source);
-    return std::sqrt(squares) + mean * static_cast<double>(std::min(1.0f, size / std::max(distance, 1e-37f)));
-}
-
-// Between elements, the smaller the receiver the less.
+// The smaller the receiver the less.
 double LinkEvaluator::unseen_share(const Link& link) const {
-    const float distance = (elements_[link.source].centre - elements_[link.receiver].centre).length(),
-                size = std::sqrt(elements_[link.receiver].area);
-    return kUnseen * static_cast<double>(std::min(1.0f, size / std::max(distance, 1e-37f)));
+    const double size = is_cluster(link.receiver) ? 2 * static_cast<double>(clusters_.radius(elements_, link.receiver))
+                                                  : std::sqrt(static_cast<double>(elements_[link.receiver].area));
+    return kUnseen * std::min(1.0, size / distance(link));
 }
 
 // What is large for its distance is looked at closer: a link that seems all hidden, or all seen, is not refined again.
 uint32_t LinkEvaluator::first_rounds(const Link& link) const {
-    const float size = std::sqrt(
-                    std::max(clusters_.area(elements_, link.receiver), clusters_.area(elements_, link.source))),
-                distance =
-                    (clusters_.centre(elements_, link.source) - clusters_.centre(elements_, link.receiver)).length();
-    return size > kWide * distance ? kWideRounds : 1;
+    const float area = std::max(clusters_.area(elements_, link.receiver), clusters_.area(elements_, link.source));
+    return std::sqrt(static_cast<double>(area)) > kWide * distance(link) ? kWideRounds : 1;
 }
 
-LinkEvaluator::Seen LinkEvaluator::seen_of(uint32_t number, const Ways& ways) const {
+// Points count by what they would get, and by what is not covered around them.
+LinkEvaluator::Seen LinkEvaluator::seen_of(const Link& link, uint32_t number, const Ways& ways) const {
     Seen out;
+    double weights = 0, squares = 0, noise = 0;
+    // With a cluster, rays say it.
+    const bool clustered = is_cluster(link.receiver) || is_cluster(link.source);
+    const double per_kernel = clustered ? factor_per_kernel(link) * kLinkPoints / ways.tries[number] : 0;
     for (uint32_t r = 0; r < kLinkPoints; ++r) {
-        const double factor = ways.factors[number * kLinkPoints + r];
+        const double exposed = static_cast<double>(ways.receivers[number][r].exposed);
         double weight = 0, share = 0;
         uint32_t looks = 0;
         for (uint32_t k = 0; k < kLinkPoints; ++k) {
@@ -150,19 +127,26 @@ LinkEvaluator::Seen LinkEvaluator::seen_of(uint32_t number, const Ways& ways) co
             share += static_cast<double>(luminance(ways.free.get(static_cast<int>(lane))));
             looks += ways.looks[lane];
         }
+        weights += exposed;
         if (!(weight > 0)) continue;
+        const double factor = exposed * (clustered ? weight * per_kernel : ways.factors[number * kLinkPoints + r]);
         share /= weight;
         if (std::abs(share - 0.5) > 0.4999) share = std::round(share);  // all alike, but for rounding
+        const double chance = factor * share * (1 - share) / looks;
         out.mean += factor;
         out.seen += factor * share;
-        out.within += factor * factor * share * (1 - share) / looks;
+        squares += factor * share * share;
+        noise += chance;
+        out.within += factor * chance;
         out.looks += looks;
     }
     if (!(out.mean > 0)) return out;
     out.seen /= out.mean;
     out.alike = out.seen == 0 || out.seen == 1;
+    // Of what points differ in how much they see, chance explains a part: few rays went to each.
+    out.uneven = std::sqrt(std::max((squares - noise) / out.mean - out.seen * out.seen, 0.0));
     out.within /= out.mean * out.mean;
-    out.mean /= kLinkPoints;
+    out.mean /= weights;
     return out;
 }
 
@@ -190,20 +174,26 @@ uint64_t LinkEvaluator::group(std::span<Link> links) {
         const Places& receivers = ways->receivers[number] = places_of(link.receiver);
         const Places& sources = ways->sources[number] = places_of(link.source);
         polygon_of_ = ~0u;
+        const bool to_cluster = is_cluster(link.receiver), from_cluster = is_cluster(link.source);
+        NodeLight& light = ways->lights[number];
+        if (to_cluster || from_cluster) light = light_between(link.source, link.receiver);
         for (uint32_t r = 0; r < kLinkPoints; ++r) {
+            const Place& receiver = receivers[r];
             double& factor = ways->factors[number * kLinkPoints + r];
-            factor = factor_at(receivers[r], sources, link.source);
-            for (uint32_t k = 0; k < kLinkPoints && factor > 0; ++k) {
-                const Vec3 way = sources[k].point - receivers[r].point;
+            if (!to_cluster && !from_cluster) factor = factor_at(receiver, link.source);
+            for (uint32_t k = 0; k < kLinkPoints; ++k) {
+                const Vec3 way = sources[k].point - receiver.point;
                 ways->open[number * kOfLink + r * kLinkPoints + k] =
-                    way.dot(receivers[r].normal) > 0 && way.dot(sources[k].normal) < 0;
+                    to_cluster || from_cluster ||
+                    (factor > 0 && way.dot(receiver.normal) > 0 && way.dot(sources[k].normal) < 0);
             }
         }
     }
     uint64_t rays = look(links, rounds, *ways);
     rounds.clear();
     for (uint32_t number = 0; number < links.size(); ++number) {
-        const uint32_t first = first_rounds(links[number]), more = more_rounds(links[number], seen_of(number, *ways));
+        const uint32_t first = first_rounds(links[number]),
+                       more = more_rounds(links[number], seen_of(links[number], number, *ways));
         for (uint32_t round = first; round < first + more; ++round) rounds.push_back({number, round});
     }
     rays += look(links, rounds, *ways);
@@ -215,8 +205,13 @@ uint64_t LinkEvaluator::group(std::span<Link> links) {
 // other.
 uint64_t LinkEvaluator::look(std::span<const Link> links, std::span<const Round> rounds, Ways& ways) {
     alignas(64) uint32_t keys[kBatch], indices[kBatch];
-    alignas(64) Lanes u, v, s, t, kernels;
+    alignas(64) Lanes u, v, s, t, a, b, kernels;
     uint64_t count = 0;
+    // Of a cluster, any root of the quarter.
+    const auto place_at = [&](NodeId node, const Places& places, uint32_t quarter, float share) {
+        if (!is_cluster(node)) return places[quarter];
+        return place_of(clusters_.root_at(clusters_.of(node), (static_cast<float>(quarter) + share) / kLinkPoints));
+    };
     for (size_t first = 0; first < rounds.size(); first += kInGroup) {
         const auto group = rounds.subspan(first, std::min<size_t>(kInGroup, rounds.size() - first));
         for (uint32_t lane = 0; lane < kBatch; ++lane) {
@@ -229,13 +224,16 @@ uint64_t LinkEvaluator::look(std::span<const Link> links, std::span<const Round>
         }
         random_pair_of(keys, indices, 0, u, v);
         random_pair_of(keys, indices, 1, s, t);
+        random_pair_of(keys, indices, 2, a, b);
         rays_.clear();
         std::fill_n(kernels, kBatch, 0.0f);
         for (uint32_t lane = 0; lane < group.size() * kOfLink; ++lane) {
             const uint32_t number = group[lane / kOfLink].number, pair = lane % kOfLink, at = number * kOfLink + pair;
             if (!ways.open[at]) continue;
-            const Place &place = ways.receivers[number][pair / kLinkPoints],
-                        &of = ways.sources[number][pair % kLinkPoints];
+            ++ways.tries[number];
+            const Link& link = links[number];
+            const Place place = place_at(link.receiver, ways.receivers[number], pair / kLinkPoints, a[lane]),
+                        of = place_at(link.source, ways.sources[number], pair % kLinkPoints, b[lane]);
             const Vec3 from = place.exposed == 1 ? elements_.point_in(place.part, s[lane], t[lane]) : place.point,
                        to = elements_.point_in(of.part, u[lane], v[lane]), way = to - from;
             // What is near counts for more, and is less likely to be hidden.
@@ -258,25 +256,25 @@ uint64_t LinkEvaluator::look(std::span<const Link> links, std::span<const Round>
 }
 
 void LinkEvaluator::finish(Link& link, uint32_t number, const Ways& ways) {
+    if (is_cluster(link.receiver) || is_cluster(link.source)) return finish_cluster(link, number, ways);
     const Places &receivers = ways.receivers[number], &sources = ways.sources[number];
     const double* const factors = &ways.factors[number * kLinkPoints];
     const auto lane_of = [&](uint32_t r, uint32_t k) { return number * kOfLink + r * kLinkPoints + k; };
     const auto weight_of = [&](uint32_t r, uint32_t k) { return static_cast<double>(ways.kernels[lane_of(r, k)]); };
-    // What each point of the receiver gets, of the source's mean and of its changes. Points count by what is not
-    // covered around them.
+    // What each point of the receiver gets, of the source's mean and of its changes.
     link.transfer.fill(0);
     link.spread = link.hidden = link.chance = 0;
     float exposed = 0;
     for (const Place& place : receivers) exposed += place.exposed;
     Vec3 colors(0, 0, 0);
     double arriving[kLinkPoints][3] = {};
-    double least = 1e30, most = 0, mean = 0, squares = 0, seen = 0, seen2 = 0, noise = 0;
+    double least = 1e30, most = 0, mean = 0, squares = 0;
     double counts[kLinkPoints] = {};
     for (uint32_t r = 0; r < kLinkPoints && exposed > 0; ++r) {
         counts[r] = static_cast<double>(receivers[r].exposed / exposed);
         if (counts[r] == 0) continue;
         const double factor = factors[r], counted = factor * counts[r];
-        double weight = 0, share = 0, looks = 0;
+        double weight = 0;
         for (uint32_t k = 0; k < kLinkPoints; ++k) weight += weight_of(r, k);
         for (uint32_t k = 0; k < kLinkPoints && weight > 0; ++k) {
             const double part = weight_of(r, k) / weight;
@@ -285,8 +283,6 @@ void LinkEvaluator::finish(Link& link, uint32_t number, const Ways& ways) {
             const Vec3 free = ways.free.get(static_cast<int>(lane)) / ways.kernels[lane];
             const double bright = part * static_cast<double>(luminance(free));
             colors += free * static_cast<float>(counted * part);
-            share += bright;
-            looks += ways.looks[lane];
             arriving[r][0] += factor * bright;
             arriving[r][1] += factor * bright * static_cast<double>(sources[k].x);
             arriving[r][2] += factor * bright * static_cast<double>(sources[k].y);
@@ -295,25 +291,18 @@ void LinkEvaluator::finish(Link& link, uint32_t number, const Ways& ways) {
         squares += counted * factor;
         least = std::min(least, factor);
         most = std::max(most, factor);
-        seen += counted * share;
-        seen2 += counted * share * share;
-        noise += counted * share * (1 - share) / std::max(looks, 1.0);
     }
-    const bool clustered = is_cluster(link.receiver) || is_cluster(link.source);
     const auto exact = [&] {
         elements_.corners(link.receiver, receiver_);
-        elements_.corners(link.source, polygon_);
+        elements_.corners(polygon_of_ = link.source, polygon_);
         return polygon_to_polygon(receiver_, polygon_, kRelativeError) /
                static_cast<double>(elements_[link.receiver].area);
     };
     if (!(mean > 0)) {
         // Other points may see the source where its plane cuts the receiver: that is left to smaller elements.
-        if (exposed > 0) link.spread = clustered ? greatest_factor(link) : static_cast<float>(exact());
+        if (exposed > 0) link.spread = static_cast<float>(exact());
         return;
     }
-    seen /= mean;
-    seen2 /= mean;
-    noise /= mean;
     const float bright = luminance(colors);
     link.tint = bright > 0 ? colors / bright : Vec3(1, 1, 1);
 
@@ -336,23 +325,24 @@ void LinkEvaluator::finish(Link& link, uint32_t number, const Ways& ways) {
         for (size_t row = 0; row < 3; ++row) link.transfer[3 * row + column] = static_cast<float>(line[row]);
     }
     // Four points are too few where the two are close: the contour integral says how much light there is.
-    if (!clustered && most - least > kNear * mean && elements_[link.receiver].covered == 0) {
+    if (most - least > kNear * mean && elements_[link.receiver].covered == 0) {
         const auto scale = static_cast<float>(exact() / mean);
         for (float& t : link.transfer) t *= scale;
     }
-    link.hidden = static_cast<float>(seen > 0 ? std::sqrt(std::max(1 - seen, 0.0) / seen) : 0);
-    const Seen found = seen_of(number, ways);
-    link.chance = clustered ? 0 : static_cast<float>(mean * found.chance(link.agreed));
-    link.agreed = found.alike ? link.agreed + static_cast<float>(found.looks) : 0;
-    // What differs smoothly follows a line mostly; shadows' edges do not. Of what points differ in how much they see,
-    // chance explains a part: few rays went to each.
+    const Seen found = seen_of(link, number, ways);
+    set_seen(link, found, mean);
+    // What differs smoothly follows a line mostly; shadows' edges do not.
     const auto line = line_of([&](uint32_t r) { return factors[r]; });
     const double twist = std::sqrt(std::max(squares - mean * mean - points.of(line[1], line[2]), 0.0)),
-                 smooth = kCurved * (most - least) * (most - least) / mean + twist,
-                 shadow = std::sqrt(std::max(seen2 - seen * seen - noise, 0.0));
-    link.spread = clustered ? static_cast<float>(std::min(cluster_error(link, arriving, mean),
-                                                          static_cast<double>(greatest_factor(link))))
-                            : static_cast<float>(smooth * seen + mean * (kShadow * shadow + unseen_share(link)));
+                 smooth = kCurved * (most - least) * (most - least) / mean + twist;
+    link.spread = static_cast<float>(smooth * found.seen + mean * (kShadow * found.uneven + unseen_share(link)));
+}
+
+// How much of a link is seen, and what chance may have done to that.
+void LinkEvaluator::set_seen(Link& link, const Seen& found, double mean) {
+    link.hidden = static_cast<float>(found.seen > 0 ? std::sqrt(std::max(1 - found.seen, 0.0) / found.seen) : 0);
+    link.chance = static_cast<float>(mean * found.chance(link.agreed));
+    link.agreed = found.alike ? link.agreed + static_cast<float>(found.looks) : 0;
 }
 
 }  // namespace trp

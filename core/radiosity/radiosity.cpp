@@ -114,6 +114,7 @@ bool Radiosity::advance(uint32_t steps, const RenderEvents& events, std::atomic<
                                                            : make_hierarchical_solver();
     }
     return run(events, cancelled, [&] {
+        shown_.reset();
         if (!elements_) make_elements(cancelled);
         const uint32_t most = settings.radiosity.iterations;
         const uint32_t before = elements_ ? elements_->size() : 0;
@@ -124,7 +125,7 @@ bool Radiosity::advance(uint32_t steps, const RenderEvents& events, std::atomic<
             solved_ = !solver_->step(job) && !cancelled;
         }
         if (elements_ && elements_->size() != before) vertices_.reset();  // they depend on nothing else
-        if (solved_ && statistics_.wanted > 0 && statistics_.residual > statistics_.wanted)
+        if (solved_ && statistics_.limited)
             warnings_.push_back(
                 {TRP_WARNING_MESH, TRP_NO_ID,
                  fmt::format("radiosity ended at its limit of elements and links, {} of them: its estimated error is "
@@ -178,10 +179,16 @@ std::shared_ptr<const ShownSolution> Radiosity::shown(const RadiositySettings& v
     const std::unique_lock lock(advancing_, std::try_to_lock);
     if (!lock) fail(TRP_ERROR_STATE, "the radiosity solution is being advanced");
     if (!elements_) return nullptr;
+    const Aspect aspect{view.view, view.ambient, view.view_element};
+    if (!shown_ || aspect != aspect_) shown_ = make_shown(view), aspect_ = aspect;
+    return shown_;
+}
+
+std::shared_ptr<const ShownSolution> Radiosity::make_shown(const RadiositySettings& view) {
     auto out = std::make_shared<ShownSolution>();
     vertices();
     out->vertices = vertices_;
-    out->elements = std::make_shared<const Elements>(*elements_);
+    out->elements = shown_ ? shown_->elements : std::make_shared<const Elements>(*elements_);
     out->leaves.resize(elements_->size());
     if (view.view == RadiositySettings::View::form_factors) {
         show_form_factors(view.view_element, *out);

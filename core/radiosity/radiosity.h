@@ -43,18 +43,28 @@ class Radiosity {
     std::vector<double> row_sums() const;
     const ElementVertices& vertices();  // of the elements as they are; made on first use
     // As it is now, for renders, which hold it; null where there are no elements yet. `view`: the settings of the
-    // render that shows it. Throws Error while another thread advances it.
+    // render that shows it. Made once for frames that follow each other. Throws Error while another thread advances it.
     std::shared_ptr<const ShownSolution> shown(const RadiositySettings& view);
 
   private:
     bool run(const RenderEvents& events, std::atomic<bool>& cancelled, const std::function<void()>& work);
     void make_elements(std::atomic<bool>& cancelled);
     void warn_of_clamped();
+    std::shared_ptr<const ShownSolution> make_shown(const RadiositySettings& view);
     void show_form_factors(uint32_t number, ShownSolution& out);
+    // What of the settings says which values are shown.
+    struct Aspect {
+        RadiositySettings::View view = RadiositySettings::View::shaded;
+        bool ambient = false;
+        uint32_t element = 0;
+        bool operator==(const Aspect&) const = default;
+    };
 
     std::shared_ptr<const Snapshot> snapshot_;
     std::shared_ptr<Elements> elements_;
     std::shared_ptr<const ElementVertices> vertices_;
+    std::shared_ptr<const ShownSolution> shown_;  // of the solution as it is, or null
+    Aspect aspect_;                               // of shown_
     Solution solution_;
     SolverStatistics statistics_;
     std::unique_ptr<Solver> solver_;

@@ -125,6 +125,7 @@ ElementVertices::ElementVertices(const Elements& elements) {
     }
     corner_first.back() = static_cast<uint32_t>(corner_loop.size());
     first_.assign(elements.size() + 1, 0);
+    ways_.assign(elements.size(), Way::constant);
     for (uint32_t i = 0; i < elements.size(); ++i) {
         first_[i] = static_cast<uint32_t>(loop_.size());
         const uint32_t begin = corner_first[i], count = corner_first[i + 1] - begin;
@@ -133,6 +134,10 @@ ElementVertices::ElementVertices(const Elements& elements) {
             corners_.push_back(1);
             add_between(corner_loop[begin + k], corner_loop[begin + (k + 1) % count], kMostBetween);
         }
+        const bool plain = loop_.size() - first_[i] == count;
+        const Facet::Shape shape = elements.facet_of(i).shape;
+        if (shape == Facet::Shape::triangle) ways_[i] = plain ? Way::linear : Way::triangle_sectors;
+        if (shape == Facet::Shape::quad) ways_[i] = plain ? Way::bilinear : Way::quad_sectors;
     }
     first_.back() = static_cast<uint32_t>(loop_.size());
 }
@@ -159,19 +164,12 @@ std::vector<Vec3> ElementVertices::average(const Elements& elements, const std::
     return sums;
 }
 
-Vec3 ElementVertices::interpolate(const Elements& elements, const Elements::Place& place,
-                                  const std::vector<Vec3>& at_vertices, const std::vector<Vec3>& at_leaves) const {
-    const uint32_t leaf = place.element;
-    const Element& e = elements[leaf];
-    const Facet::Shape shape = elements.facets()[e.facet].shape;
-    if (shape == Facet::Shape::polygon) return at_leaves[leaf];
+Vec3 ElementVertices::in_sectors(uint32_t leaf, float u, float v, const std::vector<Vec3>& at_vertices,
+                                 const std::vector<Vec3>& at_leaves) const {
     const auto loop = around(leaf);
     const uint8_t* const is_corner = &corners_[first_[leaf]];
     const auto at = [&](size_t k) -> const Vec3& { return at_vertices[loop[k % loop.size()]]; };
-    const float u = (place.s - e.s) / e.ds, v = (place.t - e.t) / e.dt;
-    const bool quad = shape == Facet::Shape::quad;
-    if (quad && loop.size() == 4) return (at(0) * (1 - u) + at(1) * u) * (1 - v) + (at(3) * (1 - u) + at(2) * u) * v;
-    if (!quad && loop.size() == 3) return at(0) * (1 - u - v) + at(1) * u + at(2) * v;
+    const bool quad = ways_[leaf] == Way::quad_sectors;
 
     // The sector of a side about the middle, how far out the place lies in it, and where along the side.
     int side;

@@ -33,9 +33,14 @@ class ElementVertices {
     // along its facet's axes, as Linear has them; or empty.
     std::vector<Vec3> average(const Elements& elements, const std::vector<Vec3>& values,
                               const std::vector<std::array<Vec3, 2>>& slopes) const;
-    // What vertices have, and the leaf, at a place in it.
-    Vec3 interpolate(const Elements& elements, const Elements::Place& place, const std::vector<Vec3>& at_vertices,
-                     const std::vector<Vec3>& at_leaves) const;
+    // How a leaf is interpolated: not at all, as polygons are; between its three or four corners; or, where there are
+    // more vertices around it, in triangles about its middle.
+    enum class Way : uint8_t { constant, linear, bilinear, triangle_sectors, quad_sectors };
+    Way way(uint32_t leaf) const { return ways_[leaf]; }
+    // What vertices have, and the leaf in its middle, at a place in a leaf with sectors: u and v from 0 to 1 along the
+    // sides that meet in its first corner.
+    Vec3 in_sectors(uint32_t leaf, float u, float v, const std::vector<Vec3>& at_vertices,
+                    const std::vector<Vec3>& at_leaves) const;
 
   private:
     uint32_t find(const Vec3& position, const Vec3& normal, uint32_t slot, uint8_t side) const;
@@ -47,6 +52,7 @@ class ElementVertices {
     std::vector<ElementVertex> vertices_;
     std::vector<uint32_t> loop_, first_;
     std::vector<uint8_t> corners_;        // of each entry of loop_: 1 where it is a corner of its leaf
+    std::vector<Way> ways_;               // by element
     std::vector<uint32_t> heads_, next_;  // of the hash table
     float grid_ = 1;
 };

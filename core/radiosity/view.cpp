@@ -6,6 +6,7 @@
 
 #include "film/view.h"
 #include "radiosity/element_rays.h"
+#include "radiosity/leaf_lanes.h"
 #include "radiosity/legend.h"
 #include "raster/rasterizer.h"
 
@@ -26,15 +27,13 @@ Unit unit_of(RadiositySettings::View view) {
 
 // How near a place lies to a side of its element, in pixels: the footprint says what a pixel is there.
 // `shift`: from the points' origin to the solution's.
-float pixels_from_side(const ShownSolution& solution, const Elements::Place& place, const Vec3& shift,
-                       const Points& points, int lane) {
-    const Elements& elements = *solution.elements;
+float pixels_from_side(const Elements& elements, uint32_t leaf, const Vec3& shift, const Points& points, int lane) {
     const Vec3 here = points.position.get(lane) + shift, e1 = points.edge1.get(lane), e2 = points.edge2.get(lane);
     const Vec3 dx = e1 * points.b1_dx[lane] + e2 * points.b2_dx[lane],
                dy = e1 * points.b1_dy[lane] + e2 * points.b2_dy[lane];
     const Vec3 n = points.geometric_normal.get(lane);
     static thread_local std::vector<Vec3d> corners;
-    elements.corners(place.element, corners);
+    elements.corners(leaf, corners);
     float nearest = 1e30f;
     for (size_t k = 0; k < corners.size(); ++k) {
         const Vec3 a(corners[k]), way = Vec3(corners[(k + 1) % corners.size()]) - a;
@@ -61,38 +60,40 @@ bool radiosity_view(RenderJob& job, const RenderEvents& events) {
     const RadiositySettings& settings = job.settings.radiosity;
     const Vec3 shift(job.snapshot->origin - solution.elements->snapshot().origin);
     using View = RadiositySettings::View;
-    const bool false_colors = settings.view >= View::false_color;
+    const bool false_colors = settings.view >= View::false_color, shaded = settings.view == View::shaded;
     // The elements' own, where each has a form factor.
     const bool smooth = settings.smooth && settings.view != View::form_factors;
     const Unit unit = unit_of(settings.view);
     float scale = settings.view_scale / unit.per_watt;
-    if (!(scale > 0))
+    if (false_colors && !(scale > 0))
         for (const Vec3& value : solution.leaves) scale = std::max(scale, luminance(value));
     const bool whole = draw_radiance(
         job, events, "radiosity", [&](const Points& points, const Coefficients& coefficients, LaneVec3& radiance) {
-            for (int i = 0; i < kBatch; ++i) {
-                radiance.set(i, {0, 0, 0});
-                if (points.slot[i] == kNoSlot) continue;
-                const auto place = solution.elements->find(points.slot[i], points.triangle[i], points.b1[i],
-                                                           points.b2[i], points.behind[i] != 0);
-                Vec3 value(0, 0, 0);
-                if (place.element != kNoElement)
-                    value = smooth ? solution.vertices->interpolate(*solution.elements, place, solution.at_vertices,
-                                                                    solution.leaves)
-                                   : solution.leaves[place.element];
-                Vec3 shown = value / kPi;
-                if (settings.view == View::shaded)
-                    shown = coefficients.emission.get(i) + coefficients.diffuse.get(i) * shown;
-                else if (false_colors)
-                    shown = false_color(scale > 0 ? luminance(value) / scale : 0);
-                if (false_colors && solution.chosen != kNoElement && place.element == solution.chosen)
-                    shown = {1, 1, 1};
-                if (settings.mesh && place.element != kNoElement) {
-                    const float from_side = pixels_from_side(solution, place, shift, points, i);
-                    shown *= std::clamp(from_side - 0.5f, 0.0f, 1.0f);
+            LeafLanes places;
+            find_leaves(*solution.elements, points, places);
+            if (smooth)
+                interpolate(*solution.vertices, places, solution.at_vertices, solution.leaves, radiance);
+            else
+                for (int i = 0; i < kBatch; ++i)
+                    radiance.set(i, places.leaf[i] == kNoElement ? Vec3(0, 0, 0) : solution.leaves[places.leaf[i]]);
+            if (false_colors)
+                for (int i = 0; i < kBatch; ++i)
+                    radiance.set(i, places.leaf[i] != kNoElement && places.leaf[i] == solution.chosen
+                                        ? Vec3(1, 1, 1)
+                                        : false_color(scale > 0 ? luminance(radiance.get(i)) / scale : 0));
+            else
+                for (int c = 0; c < 3; ++c)
+                    for (int i = 0; i < kBatch; ++i) {
+                        const float shown = radiance[c][i] / kPi;
+                        radiance[c][i] =
+                            shaded ? coefficients.emission[c][i] + coefficients.diffuse[c][i] * shown : shown;
+                    }
+            if (settings.mesh)
+                for (int i = 0; i < kBatch; ++i) {
+                    if (places.leaf[i] == kNoElement) continue;
+                    const float from_side = pixels_from_side(*solution.elements, places.leaf[i], shift, points, i);
+                    radiance.set(i, radiance.get(i) * std::clamp(from_side - 0.5f, 0.0f, 1.0f));
                 }
-                radiance.set(i, shown);
-            }
         });
     if (!whole || !false_colors || !settings.legend) return whole;
     // The legend is a tile more.

@@ -294,16 +294,19 @@ bool Rasterizer::block(uint32_t place, BlockSamples& samples, uint32_t sample, i
         add_surfaces({snapshot, w.points, w.coefficients, {w.radiance, arriving(w)}, throughput},
                      sample == 0 ? first : nullptr, sums);
     }
-    if (layered)
+    if (layered) {
+        const bool seen_through = any_seen && is_seen_through(w);
         for (int i = 0; i < kBatch; ++i) {
-            const Vec3 left = keys[i] == kNothing ? Vec3(0, 0, 0)
-                                                  : throughput_behind(w.points, w.coefficients, i, throughput->get(i));
+            const Vec3 left = keys[i] == kNothing || !seen_through
+                                  ? Vec3(0, 0, 0)
+                                  : throughput_behind(w.points, w.coefficients, i, throughput->get(i));
             throughput->set(i, left);
             if (left == Vec3(0, 0, 0))
                 w.visibility.close(place, i);
             else
                 any_left = true;
         }
+    }
     if (sample == 0 && layer == 0 && !layered) finish_depth(first, sums);
     job.film->add_samples(x / kBlockSide, y / kBlockSide, layer == 0);
     return any_left;

@@ -174,7 +174,7 @@ void locate_lanes(const Snapshot& snapshot, NormalChoice choice, Side seen_side,
             const bool bends = surface.mesh->time_count > 1;
             Vector3<V> n0 = none, n1 = none, n2 = none;
             auto smooth = hn::MaskFromVec(zero);
-            for_each_triangle(di, triangles, here, [&](uint32_t triangle, auto these) {
+            for_each_number(di, triangles, here, [&](uint32_t triangle, auto these) {
                 const auto lanes_of = hn::RebindMask(d, these);
                 const uint32_t* const v = surface.vertices + 3 * size_t{triangle};
                 Vector3<V>* const corners[3] = {&c.p0, &c.p1, &c.p2};

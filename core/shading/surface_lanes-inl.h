@@ -15,31 +15,24 @@ HWY_BEFORE_NAMESPACE();
 namespace trp::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Calls visit(surface, those of the lanes in `left` that see it) for every surface among `slots`.
+// Calls visit(number, those of the lanes in `left` that have it) for every number among `numbers`, of triangles or the
+// like. Neighbours mostly see few, of which what is needed is read once and not gathered lane by lane.
 template <class DI, class VI, class M, class Visit>
-void for_each_surface(DI di, const Snapshot& snapshot, VI slots, M left, Visit&& visit) {
+void for_each_number(DI di, VI numbers, M left, Visit&& visit) {
     alignas(64) int32_t all[HWY_MAX_BYTES / sizeof(int32_t)];
-    hn::Store(slots, di, all);
+    hn::Store(numbers, di, all);
     while (!hn::AllFalse(di, left)) {
-        const int32_t slot = all[hn::FindFirstTrue(di, left)];
-        const M here = hn::And(left, hn::Eq(slots, hn::Set(di, slot)));
-        visit(snapshot.surfaces[slot], here);
+        const int32_t number = all[hn::FindFirstTrue(di, left)];
+        const M here = hn::And(left, hn::Eq(numbers, hn::Set(di, number)));
+        visit(static_cast<uint32_t>(number), here);
         left = hn::AndNot(here, left);
     }
 }
 
-// Calls visit(triangle, those of the lanes in `left` that see it) for every triangle among `triangles`. Neighbours
-// mostly see few, whose vertices are read once and not gathered lane by lane.
+// Calls visit(surface, those of the lanes in `left` that see it) for every surface among `slots`.
 template <class DI, class VI, class M, class Visit>
-void for_each_triangle(DI di, VI triangles, M left, Visit&& visit) {
-    alignas(64) int32_t all[HWY_MAX_BYTES / sizeof(int32_t)];
-    hn::Store(triangles, di, all);
-    while (!hn::AllFalse(di, left)) {
-        const int32_t triangle = all[hn::FindFirstTrue(di, left)];
-        const M here = hn::And(left, hn::Eq(triangles, hn::Set(di, triangle)));
-        visit(static_cast<uint32_t>(triangle), here);
-        left = hn::AndNot(here, left);
-    }
+void for_each_surface(DI di, const Snapshot& snapshot, VI slots, M left, Visit&& visit) {
+    for_each_number(di, slots, left, [&](uint32_t slot, M here) { visit(snapshot.surfaces[slot], here); });
 }
 
 // What each of `steps`, evenly spaced over the times 0 to 1, counts for at the lanes' times: linear between two.

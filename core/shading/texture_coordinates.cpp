@@ -30,7 +30,7 @@ void read_uv_lanes(const Snapshot& snapshot, const std::string& uv_set, const Po
         for_each_surface(di, snapshot, slots, left, [&](const PlacedSurface& surface, auto here) {
             const Attribute* layer = find_layer(surface.mesh->uv_sets, uv_set);
             if (!layer) return;
-            for_each_triangle(di, triangles, here, [&](uint32_t triangle, auto these) {
+            for_each_number(di, triangles, here, [&](uint32_t triangle, auto these) {
                 const auto mask = hn::RebindMask(d, these);
                 const float* corners[3];
                 for (int k = 0; k < 3; ++k) {

@@ -34,8 +34,11 @@ void add_floor(TrpScene* scene) {
         offsets.push_back(static_cast<uint32_t>(corners.size()));
     };
     add_quad({{{0, 0, 0}, {kSide, 0, 0}, {kSide, kSide, 0}, {0, kSide, 0}}});
-    for (float x = 5; x < kSide; x += 10)
-        for (float y = 5; y < kSide; y += 10) {
+    constexpr float kApart = 10;
+    constexpr int kAcross = static_cast<int>(kSide / kApart);
+    for (int i = 0; i < kAcross; ++i)
+        for (int j = 0; j < kAcross; ++j) {
+            const float x = kApart * (static_cast<float>(i) + 0.5f), y = kApart * (static_cast<float>(j) + 0.5f);
             const float a = x + 1, b = y + 1, h = 2;
             add_quad({{{x, y, 0}, {a, y, 0}, {a, y, h}, {x, y, h}}});
             add_quad({{{a, y, 0}, {a, b, 0}, {a, b, h}, {a, y, h}}});

@@ -221,7 +221,8 @@ TEST(HiddenLine, TouchingFacesKeepTheirEdges) {
                                       static_cast<int>(std::floor(dot(to, y) * scale + 100)) + dy));
         return most;
     };
-    for (float x = -0.9f; x < 0.95f; x += 0.05f) {
+    for (int step = 0; step <= 36; ++step) {
+        const float x = -0.9f + 0.05f * static_cast<float>(step);
         EXPECT_GT(ink_of({x, -1, 0}), 0.4f) << x;
         EXPECT_GT(ink_of({x, 1, 1.5f}), 0.4f) << x;
         EXPECT_LT(ink_of({x, 1, 0}), 0.02f) << x;
@@ -241,7 +242,8 @@ TEST(HiddenLine, TouchingFacesKeepTheirEdgesFarAway) {
         const Vec eye = {0.3f, 0, 1.7f}, z = unit(eye - Vec{0.2f * distance, distance, 1}),
                   x = unit(cross({0, 0, 1}, z)), y = cross(z, x);
         const Image image = draw(scene, 960, 540, "hidden_line");
-        for (float s = -0.9f; s < 0.95f; s += 0.02f) {
+        for (int step = 0; step <= 92; ++step) {
+            const float s = -0.9f + 0.02f * static_cast<float>(step);
             const Vec p = {0.97f * s + 0.2f * distance, -0.2f * s + 0.97f * distance, 0}, to = p - eye;
             const float scale = 480 / std::tan(0.3f) / -dot(to, z);
             float most = 0;

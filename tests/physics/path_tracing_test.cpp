@@ -16,7 +16,8 @@ Image path_traced(Scene& scene, uint32_t width, uint32_t height, const Settings&
 // A point light at the centre of a sphere of reflectance ρ: the wall's irradiance is I / r², its radiance after d
 // diffuse reflections ρ I / (π r²) (1 + ρ + … + ρ^d).
 TEST(PathTracing, AnIntegratingSphereIsAGeometricSeries) {
-    const double intensity = 5, radius = 2;
+    constexpr float intensity = 5;
+    constexpr double radius = 2;
     Scene scene;
     scene.object(sphere({0, 0, 0}, radius, 48), scene.diffuse(0.8f, 0.5f, 0.2f));
     scene.light(TRP_LIGHT_POINT, {intensity, intensity, intensity}, translation({0, 0, 0}));

@@ -152,8 +152,10 @@ TEST(Projections, CrossAndCircleShowTheSameDirections) {
     Solution by_circle(scene, by("hemisphere")), by_cross(scene, by("hemicube"));
     const Pixels circle(by_circle.prepare()), cross(by_cross.prepare());
     int compared = 0, different = 0, seen = 0;
-    for (double x = -0.99; x < 1; x += 0.01)
-        for (double y = -0.99; y < 1; y += 0.01) {
+    constexpr int kSteps = 100;
+    for (int i = 1 - kSteps; i < kSteps; ++i)
+        for (int j = 1 - kSteps; j < kSteps; ++j) {
+            const double x = static_cast<double>(i) / kSteps, y = static_cast<double>(j) / kSteps;
             const double z2 = 1 - x * x - y * y;
             if (z2 < 1e-3) continue;
             const double z = std::sqrt(z2), top = std::max(std::abs(x), std::abs(y));
