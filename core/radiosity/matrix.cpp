@@ -2,8 +2,9 @@
 //
 // It is kept in its symmetric form G_ij = A_i F_ij = A_j F_ji, one matrix for each colour where glass or mirrors tint
 // what passes. Sampled rows are made symmetric, the row of more rays to the area counting for more, and scaled so that
-// each keeps its sum, of which rays miss nothing: G ← D G D (Sinkhorn and Knopp 1967). Others are scaled where their
-// sum is above 1, as that of what sees two faces in one place.
+// each keeps its sum, of which rays miss nothing: G ← D G D (Sinkhorn and Knopp 1967). What rays go on from has no part
+// in that: how often they meet it varies far more than where they end. Others are scaled where their sum is above 1, as
+// that of what sees two faces in one place.
 #include <algorithm>
 #include <cmath>
 
@@ -30,9 +31,10 @@ class MatrixSolver : public Solver {
 
   private:
     bool assemble(const SolverJob& job);
-    std::vector<double> sums_of(const std::vector<double>& matrix) const;
+    // Of what stands in the columns `of`.
+    std::vector<double> sums_of(const std::vector<double>& matrix, const std::vector<uint8_t>& of) const;
     void make_symmetric(const Elements& elements, std::vector<double>& matrix) const;
-    void scale(std::vector<double>& matrix, const std::vector<double>& sums) const;
+    void scale(std::vector<double>& matrix, const std::vector<uint8_t>& of, const std::vector<double>& sums) const;
     void sweep(const SolverJob& job);
 
     size_t count_ = 0;
@@ -67,23 +69,29 @@ bool MatrixSolver::assemble(const SolverJob& job) {
         }
     });
     if (job.cancelled) return false;
+    const std::vector<uint8_t> all(count_, 1);
+    std::vector<uint8_t> ends(count_);  // of rays
+    for (uint32_t i = 0; i < count_; ++i) {
+        const Facet& facet = elements.facet_of(i);
+        ends[i] = (elements.of_triangle(facet.slot, facet.triangle).flags & Elements::TriangleOf::kPass) == 0;
+    }
     for (std::vector<double>& matrix : matrices) {
         if (!halves) {
-            const std::vector<double> sums = sums_of(matrix);
+            const std::vector<double> sums = sums_of(matrix, ends);
             make_symmetric(elements, matrix);
-            scale(matrix, sums);
+            scale(matrix, ends, sums);
             continue;
         }
         for (size_t i = 0; i < count_; ++i)
             for (size_t j = 0; j < i; ++j) matrix[i * count_ + j] = matrix[j * count_ + i];
-        std::vector<double> sums = sums_of(matrix);
+        std::vector<double> sums = sums_of(matrix, all);
         bool above = false;
         for (size_t i = 0; i < count_; ++i) {
             const double area = elements[static_cast<uint32_t>(i)].area;
             above |= sums[i] > (1 + kRowError) * area;
             sums[i] = std::min(sums[i], area);
         }
-        if (above && !tinted) scale(matrix, sums);
+        if (above && !tinted) scale(matrix, all, sums);
     }
     matrices_ = std::move(matrices);
     radiosity_.resize(count_);
@@ -91,11 +99,12 @@ bool MatrixSolver::assemble(const SolverJob& job) {
     return true;
 }
 
-std::vector<double> MatrixSolver::sums_of(const std::vector<double>& matrix) const {
+std::vector<double> MatrixSolver::sums_of(const std::vector<double>& matrix, const std::vector<uint8_t>& of) const {
     std::vector<double> sums(count_, 0.0);
     parallel_ranges(count_, 16, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i)
-            for (size_t j = 0; j < count_; ++j) sums[i] += matrix[i * count_ + j];
+            for (size_t j = 0; j < count_; ++j)
+                if (of[j]) sums[i] += matrix[i * count_ + j];
     });
     return sums;
 }
@@ -109,15 +118,17 @@ void MatrixSolver::make_symmetric(const Elements& elements, std::vector<double>&
         }
 }
 
-// So that rows have the sums.
-void MatrixSolver::scale(std::vector<double>& matrix, const std::vector<double>& sums) const {
+// So that the rows `of` have the sums in these columns.
+void MatrixSolver::scale(std::vector<double>& matrix, const std::vector<uint8_t>& of,
+                         const std::vector<double>& sums) const {
     std::vector<double> scale(count_, 1.0);
     for (int round = 0; round < 50; ++round) {
         double worst = 0;
         std::vector<double> now(count_, 0.0);
         parallel_ranges(count_, 16, [&](size_t begin, size_t end) {
             for (size_t i = begin; i < end; ++i)
-                for (size_t j = 0; j < count_; ++j) now[i] += matrix[i * count_ + j] * scale[i] * scale[j];
+                for (size_t j = 0; j < count_; ++j)
+                    if (of[i] && of[j]) now[i] += matrix[i * count_ + j] * scale[i] * scale[j];
         });
         for (size_t i = 0; i < count_; ++i) {
             if (!(now[i] > 0)) continue;
