@@ -138,17 +138,24 @@ TEST(Radiosity, MirrorsHandLightOn) {
     make_mirrored_square(scene);
     const double known = 1 / (1 - 0.5 * 0.5 * 0.1998248957);
     for (const char* solver : {"hierarchical", "matrix", "progressive"}) {
-        Solution solution(scene, {{"radiosity.solver", solver},
-                                  {"radiosity.form_factors", "analytic"},
-                                  {"radiosity.rays", "16384"},
-                                  {"radiosity.tolerance", "0.001"}});
-        solution.solve();
-        const std::vector<double> b = solution.red("radiosity");
-        const std::vector<float> area = solution.read("area", 1), face = solution.read("instance", 1);
-        double sum = 0, total = 0;
-        for (size_t k = 0; k < b.size(); ++k)
-            if (face[k] == face[0]) sum += b[k] * area[k], total += area[k];
-        EXPECT_NEAR(sum / total, known, 3e-3) << solver;
+        // The hierarchy traces 256 rays at most from an element: by one of them alone it is right to 7e-3.
+        double mean = 0;
+        constexpr int kSeeds = 16;
+        for (int seed = 0; seed < kSeeds; ++seed) {
+            Solution solution(scene, {{"radiosity.solver", solver},
+                                      {"radiosity.form_factors", "analytic"},
+                                      {"radiosity.rays", "16384"},
+                                      {"radiosity.tolerance", "0.001"},
+                                      {"seed", std::to_string(seed)}});
+            solution.solve();
+            const std::vector<double> b = solution.red("radiosity");
+            const std::vector<float> area = solution.read("area", 1), face = solution.read("instance", 1);
+            double sum = 0, total = 0;
+            for (size_t k = 0; k < b.size(); ++k)
+                if (face[k] == face[0]) sum += b[k] * area[k], total += area[k];
+            mean += sum / total / kSeeds;
+        }
+        EXPECT_NEAR(mean, known, 3e-3) << solver;
     }
 }
 
