@@ -95,7 +95,7 @@ BENCHMARKS = [
     Benchmark(["radiosity.links"], "links_bench.py", ""),
     Benchmark(["radiosity.form_factors"], "form_factors_bench.py", "", python="viewfactor"),
     Benchmark(["radiosity.shot"], "shot_bench", "cornell_box", ["--goal", "1.5"]),
-    Benchmark(["radiosity.view"], "view_bench", "cornell_box", ["--goal", "1.1"]),
+    Benchmark(["radiosity.view"], "view_bench", "cornell_box", ["--element-size", "0.006", "--goal", "1"]),
     Benchmark(["edit", "cancel"], "edit_bench", "gallery", ["--edit-goal", "0.1", "--cancel-goal", "0.1"]),
 ]
 

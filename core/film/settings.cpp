@@ -157,6 +157,12 @@ const SettingRow kSettings[] = {
      "Progressive: patches, which shoot, are divided in four so many times into the elements that receive", "", "0", 0,
      8, nullptr, "radiosity", "",
      [](Settings& s, const double* v) { s.radiosity.patch_levels = static_cast<uint32_t>(*v); }},
+    {TRP_TYPE_INT, "radiosity.subdivisions", "Subdivisions",
+     "Matrix and progressive: how often an element may be divided in four, once all is solved, where what is shown "
+     "between elements would be wrong by more than twice the tolerance (0: a fiftieth of the mean radiosity), at edges "
+     "of shadows, and where a body stands on it. The parts gather their light from all others",
+     "", "0", 0, 6, nullptr, "radiosity", "",
+     [](Settings& s, const double* v) { s.radiosity.subdivisions = static_cast<uint32_t>(*v); }},
     {TRP_TYPE_INT, "radiosity.iterations", "Iterations",
      "The greatest number of steps: shots, sweeps over the matrix, or refinements of the hierarchy. 0: until it is "
      "solved",

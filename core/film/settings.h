@@ -45,6 +45,7 @@ struct RadiositySettings {
     float element_size = 0;     // metres; 0: one element to a face, or where it is divided on its own, as needed
     uint32_t patch_levels = 0;  // a patch that shoots is divided so often into elements that receive
     uint32_t iterations = 0;    // at most; 0: until it is solved
+    uint32_t subdivisions = 0;  // of elements, once solved, where radiosity changes fast: matrix and progressive
     float tolerance = 0;        // W/m²; 0: a hundredth of the mean radiosity
     float link_ratio = 0;       // of an end's side to their distance, the most in any link; 0: as the tolerance asks
     uint32_t rays = 1024;       // from each element

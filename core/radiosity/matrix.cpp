@@ -10,7 +10,7 @@
 
 #include "base/parallel.h"
 #include "radiosity/form_factors.h"
-#include "radiosity/solver.h"
+#include "radiosity/subdivide.h"
 
 namespace trp {
 namespace {
@@ -21,10 +21,12 @@ constexpr double kRowError = 1e-6;  // of the sum of a row of contour integrals
 class MatrixSolver : public Solver {
   public:
     bool step(const SolverJob& job) override {
+        if (solved_) return subdivision_.step(job);
         if (matrices_.empty() && !assemble(job)) return true;
         sweep(job);
         ++job.statistics.steps;
-        return job.statistics.residual > kSolved;
+        solved_ = job.statistics.residual <= kSolved;
+        return !solved_ || !subdivision_.is_whole(job.settings);
     }
 
     std::vector<double> row_sums(const Elements& elements) const override;
@@ -40,6 +42,8 @@ class MatrixSolver : public Solver {
     size_t count_ = 0;
     std::vector<std::vector<double>> matrices_;  // one, or one to a colour
     std::vector<Vec3d> radiosity_;
+    bool solved_ = false;
+    Subdivision subdivision_;
 };
 
 bool MatrixSolver::assemble(const SolverJob& job) {
@@ -176,6 +180,7 @@ std::vector<double> MatrixSolver::row_sums(const Elements& elements) const {
         const double area = elements[static_cast<uint32_t>(i)].exposed_area();
         out[i] = area > 0 ? out[i] / (area * static_cast<double>(matrices_.size())) : 0;
     }
+    subdivision_.put_row_sums(out);
     return out;
 }
 

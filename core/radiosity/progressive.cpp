@@ -7,7 +7,7 @@
 
 #include "base/parallel.h"
 #include "radiosity/hemisphere_row.h"
-#include "radiosity/solver.h"
+#include "radiosity/subdivide.h"
 
 namespace trp {
 namespace {
@@ -73,6 +73,8 @@ class ProgressiveSolver : public Solver {
     Vec3d reflectance_{0, 0, 0};           // times area
     std::optional<HemisphereRow> counts_;  // where shots are rays
     std::vector<Vec3d> row_;               // and where not
+    bool solved_ = false;
+    Subdivision subdivision_;
 };
 
 // Patches are the elements that are no part of another.
@@ -203,6 +205,7 @@ bool ProgressiveSolver::measure(const SolverJob& job) const {
 }
 
 bool ProgressiveSolver::step(const SolverJob& job) {
+    if (solved_) return subdivision_.step(job);
     if (patches_.empty()) begin(job);
     if (patches_.empty()) return false;
     uint32_t chosen = patches_[next_ % patches_.size()];
@@ -215,9 +218,10 @@ bool ProgressiveSolver::step(const SolverJob& job) {
     if (!(order == RadiositySettings::Order::gathering ? gather(job, chosen) : shoot(job, chosen))) return true;
     ++next_;
     ++job.statistics.steps;
-    const bool more = measure(job);
+    solved_ = !measure(job);
     // Gathering knows only after a round of all elements what is left.
-    return order == RadiositySettings::Order::gathering ? more || next_ % patches_.size() != 0 : more;
+    if (order == RadiositySettings::Order::gathering) solved_ &= next_ % patches_.size() == 0;
+    return !solved_ || !subdivision_.is_whole(job.settings);
 }
 
 }  // namespace
