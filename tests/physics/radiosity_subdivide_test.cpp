@@ -168,7 +168,7 @@ TEST(RadiositySubdivisions, AreTheSameForAnyThreads) {
         for (const char* kind : {"analytic", "hemisphere", "hemicube"}) {
             std::vector<float> values[2];
             for (int k = 0; k < 2; ++k) {
-                Solution::Settings settings = divided(solver, "0.3", 2);
+                Solution::Settings settings = divided(solver, "0.3", 1);
                 settings.insert(settings.end(), {{"threads", k ? "2" : "1"},
                                                  {"radiosity.form_factors", kind},
                                                  {"radiosity.iterations", "40"},
