@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How hierarchical radiosity's links grow with the size of the problem, at the same error throughout.
 
-A furnished room whose walls, furniture and lamp are cut into ever more quads, from 10³ to 10⁶: each is an element that
+A furnished room whose walls, furniture and lamp are cut into ever more quads, from 10³ on: each is an element that
 a matrix would have a row for. The figure is the slope of log links over log quads, by least squares; a matrix's is 2.
 Leaves a drawing, links.svg, in the build's bench folder or where --svg says.
 """
@@ -95,7 +95,7 @@ def drawing(points, growth):
 
 def main():
     parser = arguments(__doc__)
-    parser.add_argument("--fineness", type=int, nargs="+", default=[1, 2, 4, 8, 16, 32], help="quads along each side")
+    parser.add_argument("--fineness", type=int, nargs="+", default=[1, 2, 4, 8, 16], help="quads along each side")
     parser.add_argument("--svg", type=Path, metavar="FILE", help="the drawing")
     options = parser.parse_args()
     folder = options.build.resolve() / "bench"
