@@ -73,18 +73,6 @@ void HierarchicalSolver::evaluate(const SolverJob& job, std::vector<Link>& links
         for (size_t chunk = begin; chunk < end && !job.cancelled; ++chunk) {
             const size_t first = chunk * kLinkGrain, count = std::min(kLinkGrain, links.size() - first);
             job.statistics.rays += evaluator->evaluate({&links[first], count});
-            static int shown = 0;
-            for (size_t k = first; k < first + count; ++k) {
-                const Link& l = links[k];
-                if (!(l.spread + l.chance + l.share + l.hidden + l.transfer[0] + l.transfer[8] + l.tint.x < 1e30f) &&
-                    ++shown < 10)
-                    fprintf(stderr,
-                            "%x %x spread %g chance %g seen %g hidden %g t %g tint %g unres %g agreed %g allowed %g "
-                            "areas %g %g\n",
-                            l.receiver, l.source, l.spread, l.chance, l.share, l.hidden, l.transfer[0], l.tint.x,
-                            l.unresolved, l.agreed, l.allowed, clusters_.area(job.elements, l.receiver),
-                            clusters_.area(job.elements, l.source));
-            }
         }
     });
 }
