@@ -30,7 +30,7 @@ struct ElementCluster {
 };
 
 struct ElementClusters {
-    std::vector<ElementCluster> clusters;  // children after their parents; the first holds all
+    std::vector<ElementCluster> clusters;  // each before all within it, in a row; the first holds all
     std::vector<uint32_t> roots;           // elements, cluster by cluster
     std::vector<float> areas;              // of the roots before each, and of all
     // Of roots, in lanes with room after the last: middles, normals, radii, and the area that is not covered.

@@ -51,7 +51,11 @@ void HierarchicalSolver::light_clusters(const Elements& elements) {
         for (size_t k = 0; k < clusters.size(); ++k) {
             const uint32_t first = std::max(clusters[k].first_root, low),
                            last = std::min(clusters[k].first_root + clusters[k].root_count, high);
-            for (size_t l = first_link_[k]; l < first_link_[k + 1] && first < last; ++l)
+            if (first >= last) {  // past all within it: with itself, one cluster less than its roots
+                k += clusters[k].root_count - 2;
+                continue;
+            }
+            for (size_t l = first_link_[k]; l < first_link_[k + 1]; ++l)
                 receive(clusters_, to_clusters_[l], links_[l].tint * links_[l].share, first, last, root_light_);
         }
     });
