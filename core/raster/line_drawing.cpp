@@ -26,10 +26,9 @@ struct Workspace {
     LineTile lines;
     VisibilityTile visibility;
     LineVisibility line_visibility;
+    ClusterVertices vertices;
     std::vector<DrawnLine> drawn;
-    // Of a cluster, where faces hide.
-    std::vector<DrawnLine> whole;
-    std::vector<LineVisibility::Line> split;
+    std::vector<DrawnLine> whole;  // of a cluster, where faces hide
     LaneVec3 origins, directions;
 };
 
@@ -127,7 +126,10 @@ void LineDrawing::add_runs(const DrawnLine& line, std::span<const Run> runs, con
     const Segment& s = line.segment;
     const auto add = [&](float begin, float end, const Vec3& color) {
         begin = std::max(begin, line.begin), end = std::min(end, line.end);
-        if (begin < end) w.drawn.push_back({s, begin, end, color, line.key});
+        if (!(begin < end)) return;
+        w.drawn.push_back(line);
+        w.drawn.back().begin = begin, w.drawn.back().end = end;
+        w.drawn.back().color = color;
     };
     for (const Run& run : runs) {
         if (run.seen) {
@@ -164,24 +166,24 @@ bool LineDrawing::cut_far(DrawnLine& line) const {
 // The lines of a cluster of edges into w.drawn.
 void LineDrawing::add_edges(uint32_t number, const TileReach& reach, Workspace& w) const {
     Segment segments[Cluster::kMostPrimitives];
-    const uint32_t slot = edges.clusters[number].slot;
-    const std::vector<Edge>& all = edges.surfaces[slot]->surface->edges().edges;
-    const uint32_t count = find_segments(edges.placed(edges.clusters[number], projection), reach, segments);
+    const DrawnCluster& drawn = edges.clusters[number];
+    const PlacedCluster cluster = edges.placed(drawn, projection);
+    const PlacedSurface& surface = *edges.surfaces[drawn.slot];
+    const uint32_t* const own = &cluster.set.primitives[cluster.cluster().first];
+    const uint32_t count = find_segments(cluster, reach, w.vertices, segments);
     std::vector<DrawnLine>& lines = hides ? w.whole : w.drawn;
     lines.clear();
-    w.split.clear();
     for (uint32_t k = 0; k < count; ++k) {
-        const uint32_t key = number * Cluster::kMostPrimitives + segments[k].number;
-        uint32_t edge = 0;
-        const PlacedSurface& surface = edge_of(key, edge);
+        const uint32_t edge = own[segments[k].number];
         if (!classes.has(surface, edge)) continue;
-        DrawnLine line{segments[k], 0, 1, color_of(surface, edge), key};
-        if (!cut_far(line)) continue;
-        lines.push_back(line);
-        w.split.push_back({&segments[k], &all[edge]});
+        DrawnLine& line = lines.emplace_back();
+        line.segment = segments[k];
+        line.color = color_of(surface, edge);
+        line.key = number * Cluster::kMostPrimitives + segments[k].number;
+        if (!cut_far(line)) lines.pop_back();
     }
     if (!hides) return;
-    w.line_visibility.split(slot, w.split);
+    w.line_visibility.split(drawn.slot, cluster, w.vertices, lines);
     w.drawn.clear();
     for (size_t n = 0; n < lines.size(); ++n) add_runs(lines[n], w.line_visibility.runs(n), reach, w);
 }

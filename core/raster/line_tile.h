@@ -17,7 +17,7 @@ namespace trp {
 // A segment's part from `begin` to `end`, which go from 0 to 1 along it.
 struct DrawnLine {
     Segment segment;
-    float begin, end;
+    float begin = 0, end = 1;
     Vec3 color;
     uint32_t key;  // what the passes tell of the nearest line
 };

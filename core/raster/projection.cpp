@@ -1,5 +1,7 @@
 #include "raster/projection.h"
 
+#include <algorithm>
+
 namespace trp {
 
 Projection::Projection(const View& view, uint32_t width, uint32_t height)
@@ -7,7 +9,8 @@ Projection::Projection(const View& view, uint32_t width, uint32_t height)
       width_(width),
       height_(height),
       clip_start_(view.clip_start),
-      clip_end_(view.clip_end) {
+      clip_end_(view.clip_end),
+      pixel_size_(static_cast<float>(std::max(view.step_x, view.step_y))) {
     const Vec3d axes[3] = {Vec3d(view.x), Vec3d(view.y), -Vec3d(view.z)}, position(view.position);
     const double steps[2] = {view.step_x, view.step_y}, ends[2] = {view.left, view.bottom};
     for (int c = 0; c < 3; ++c) rows_[2][c] = axes[2][c];

@@ -37,6 +37,8 @@ class Projection {
     // What nothing seen can be behind of.
     float farthest() const { return perspective_ ? 1 / clip_end_ : -clip_end_; }
     float nearness(float depth) const { return perspective_ ? 1 / depth : -depth; }
+    // How much nearness changes over a depth of a pixel's size: through a perspective camera, times the nearness.
+    float pixel_size() const { return pixel_size_; }
     // For points given before `world_from_object`.
     FilmTransform transform(const Affine& world_from_object) const;
 
@@ -44,7 +46,7 @@ class Projection {
     double rows_[3][4];
     bool perspective_;
     uint32_t width_, height_;
-    float clip_start_, clip_end_;
+    float clip_start_, clip_end_, pixel_size_;
 };
 
 // The scene's camera for a film of that size. Throws Error where there is none, or it has a lens that `method` cannot

@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "raster/cluster_vertices.h"
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raster/segments.cpp"
 #include "hwy/foreach_target.h"
@@ -45,14 +43,13 @@ bool cut_segment(const PlacedCluster& c, uint32_t k, const TileReach& tile, Segm
     return true;
 }
 
-uint32_t find_segment_lanes(const PlacedCluster& c, const TileReach& tile, Segment* out) {
+uint32_t find_segment_lanes(const PlacedCluster& c, const TileReach& tile, ClusterVertices& vertices, Segment* out) {
     const hn::ScalableTag<float> d;
     const hn::RebindToSigned<decltype(d)> di;
     const hn::Rebind<uint8_t, decltype(di)> d8;
     using VI = hn::Vec<decltype(di)>;
     const int lanes = static_cast<int>(hn::Lanes(d));
     const Cluster& cluster = c.cluster();
-    ClusterVertices vertices;
     project_vertices(c, grid_centre(static_cast<int32_t>(tile.x0)), grid_centre(static_cast<int32_t>(tile.y0)),
                      vertices);
 
@@ -80,9 +77,11 @@ uint32_t find_segment_lanes(const PlacedCluster& c, const TileReach& tile, Segme
             if (!is_wanted[m]) continue;
             Segment& segment = out[count];
             const uint32_t at = cluster.first + k + m;
-            segment.number = k + m;
+            segment.number = static_cast<uint8_t>(k + m);
             const uint8_t ends[2] = {c.set.corners[0][at], c.set.corners[1][at]};
-            if (vertices.is_cut[ends[0]] || vertices.is_cut[ends[1]]) {
+            std::copy_n(ends, 2, segment.ends);
+            segment.is_cut = vertices.is_cut[ends[0]] || vertices.is_cut[ends[1]];
+            if (segment.is_cut) {
                 count += cut_segment(c, k + m, tile, segment);
                 continue;
             }
@@ -104,8 +103,8 @@ HWY_AFTER_NAMESPACE();
 namespace trp {
 HWY_EXPORT(find_segment_lanes);
 
-uint32_t find_segments(const PlacedCluster& cluster, const TileReach& tile, Segment* out) {
-    return HWY_DYNAMIC_DISPATCH(find_segment_lanes)(cluster, tile, out);
+uint32_t find_segments(const PlacedCluster& cluster, const TileReach& tile, ClusterVertices& vertices, Segment* out) {
+    return HWY_DYNAMIC_DISPATCH(find_segment_lanes)(cluster, tile, vertices, out);
 }
 
 }  // namespace trp

@@ -38,6 +38,7 @@ class VisibilityTile {
 
     // The lanes of a block, by its place in the tile.
     const uint32_t* keys(uint32_t block) const { return &keys_[size_t{block} * kBatch]; }
+    const float* nearness(uint32_t block) const { return &nearness_[size_t{block} * kBatch]; }
     // Whether all of the cluster lies behind what is drawn, by a thousandth of its nearness at least.
     bool hides(const DrawnCluster& cluster);
     // Removes a lane from what is seen, so that nothing is seen behind it either.

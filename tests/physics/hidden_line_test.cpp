@@ -255,6 +255,74 @@ TEST(HiddenLine, TouchingFacesKeepTheirEdgesFarAway) {
     }
 }
 
+// A floor of quads with sides of `cell` from −half to half, `apart`: each with vertices of its own.
+MeshData fine_floor(int cells, float cell, bool apart) {
+    MeshData m;
+    const float half = static_cast<float>(cells) * cell / 2;
+    const auto add = [&](int i, int j) {
+        m.positions.insert(m.positions.end(),
+                           {static_cast<float>(i) * cell - half, static_cast<float>(j) * cell - half, 0});
+    };
+    m.offsets = {0};
+    if (!apart)
+        for (int k = 0; k < (cells + 1) * (cells + 1); ++k) add(k % (cells + 1), k / (cells + 1));
+    for (int k = 0; k < cells * cells; ++k) {
+        const int i = k % cells, j = k / cells;
+        for (const auto& [u, v] : {std::pair{i, j}, {i + 1, j}, {i + 1, j + 1}, {i, j + 1}}) {
+            m.corners.push_back(static_cast<uint32_t>(apart ? m.positions.size() / 3 : v * (cells + 1) + u));
+            if (apart) add(u, v);
+        }
+        m.offsets.push_back(static_cast<uint32_t>(m.corners.size()));
+    }
+    return m;
+}
+
+TEST(HiddenLine, ShortEdgesAreHiddenByWhatLiesCloseBeforeThem) {
+    // Edges of 0.7, 1.9 and 4.3 pixels under a square of another object, or of their own.
+    for (const float cell : {0.07f, 0.19f, 0.43f})
+        for (const float height : {0.001f, 0.05f, 2.0f})
+            for (const bool same_object : {false, true}) {
+                Scene scene;
+                MeshData floor = fine_floor(static_cast<int>(9 / cell), cell, false);
+                const MeshData cover = floor_square(2, height);
+                if (same_object) {
+                    const auto first = static_cast<uint32_t>(floor.positions.size() / 3);
+                    floor.positions.insert(floor.positions.end(), cover.positions.begin(), cover.positions.end());
+                    for (const uint32_t corner : {0u, 1u, 2u, 3u}) floor.corners.push_back(first + corner);
+                    floor.offsets.push_back(static_cast<uint32_t>(floor.corners.size()));
+                } else {
+                    scene.object(cover);
+                }
+                scene.object(floor);
+                see_from_above(scene);
+                const Image image = draw(scene, kWidth, kHeight, "hidden_line", {{"lines.width", "1"}});
+                double within = 0, outside = 0;
+                for (int y = 22; y < 58; ++y)
+                    for (int x = 32; x < 68; ++x) within += ink(image, x, y);
+                for (int y = 5; y < 15; ++y)
+                    for (int x = 32; x < 68; ++x) outside += ink(image, x, y) / 360;
+                const auto which = ::testing::Message() << cell << " m, " << height << " m above, " << same_object;
+                EXPECT_EQ(within, 0) << which;
+                EXPECT_GT(outside, 0.3) << which;
+            }
+}
+
+TEST(HiddenLine, VerticesAtOnePlaceAreOne) {
+    // Faces with vertices of their own, as game formats have them.
+    for (const float cell : {0.07f, 0.19f, 0.43f}) {
+        Image images[2];
+        for (const bool apart : {false, true}) {
+            Scene scene;
+            scene.object(fine_floor(static_cast<int>(6 / cell), cell, apart));
+            scene.camera(look_at({0, -6, 3}, {0, 0, 0}), [](TrpCameraDesc& d) { d.field_of_view = 0.9f; });
+            scene.commit();
+            images[apart] = draw(scene, 200, 100, "hidden_line");
+        }
+        EXPECT_GT(total_ink(images[0]), 2000);
+        EXPECT_NEAR(total_ink(images[1]), total_ink(images[0]), 0.001 * total_ink(images[0])) << cell;
+    }
+}
+
 TEST(HiddenLine, EdgesThroughTheEyePlaneStraightOnTheFilm) {
     // The middle edge of a floor goes under the camera and stands upright on the film.
     Scene scene;
