@@ -17,6 +17,8 @@ inline bool is_cluster(NodeId node) {
     return (node & kClusterBit) != 0;
 }
 
+inline constexpr float kApart = 0.7f;  // of their distance, what the radii of ends that are apart are less than
+
 struct ElementCluster {
     NodeId children[2] = {0, 0};
     uint32_t first_root = 0, root_count = 0;  // in ElementClusters::roots
@@ -46,6 +48,11 @@ struct ElementClusters {
     }
     float radius(const Elements& elements, NodeId node) const {
         return is_cluster(node) ? of(node).radius : elements.radius(node);
+    }
+    // Whether they are so small for their distance that light may be taken to come from one point.
+    bool apart(const Elements& elements, NodeId a, NodeId b) const {
+        return radius(elements, a) + radius(elements, b) <
+               kApart * (centre(elements, a) - centre(elements, b)).length();
     }
     // False where no part of one node can lie before a part of the other, and after it.
     bool may_see(const Elements& elements, NodeId a, NodeId b) const;

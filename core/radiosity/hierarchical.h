@@ -83,6 +83,7 @@ class HierarchicalSolver : public Solver {
         std::vector<uint8_t> uneven;  // by element: lamps shine on it so unevenly that it is divided
     };
     Marks mark(const SolverJob& job) const;
+    void add_parts(const Elements& elements, const Link& link, Part part, int times, std::vector<Link>& out) const;
     bool refine(const SolverJob& job);
     bool is_full() const { return links_.size() + element_nodes_.size() > most_; }
     float extent(const Elements& elements, NodeId id) const;

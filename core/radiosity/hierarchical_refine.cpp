@@ -11,6 +11,7 @@ namespace trp {
 namespace {
 
 constexpr double kCoherent = 0.5;  // of what differs within a source, what is wrong the same way where half is hidden
+constexpr int kAtOnce = 2;         // divisions of a link, where a cluster is not apart from its other end
 constexpr double kChance = 0.125;  // of the tolerance, what chance may do to what a link brings
 
 // Of shares of the squared error, the least of those to be refined, so that the rest is half of what is allowed
@@ -127,11 +128,31 @@ HierarchicalSolver::Marks HierarchicalSolver::mark(const SolverJob& job) const {
     return out;
 }
 
+// The links that take the place of one, of which a part is divided. What it brings between ends that are not apart is
+// hardly known: parts of it that are not either are divided at once, as the next step would.
+void HierarchicalSolver::add_parts(const Elements& elements, const Link& link, Part part, int times,
+                                   std::vector<Link>& out) const {
+    const bool by_receiver = part == Part::receiver;
+    const Children below = children(elements, by_receiver ? link.receiver : link.source);
+    for (const NodeId child : std::span(below.ids, below.count)) {
+        Link next{by_receiver ? child : link.receiver, by_receiver ? link.source : child};
+        next.agreed = link.agreed / static_cast<float>(below.count);
+        next.allowed = link.allowed;
+        if (!clusters_.may_see(elements, next.receiver, next.source)) continue;
+        const bool clustered = is_cluster(next.receiver) || is_cluster(next.source);
+        if (times > 1 && clustered && !clusters_.apart(elements, next.receiver, next.source))
+            add_parts(elements, next, part_by_error(elements, next, {}), times - 1, out);
+        else
+            out.push_back(next);
+    }
+}
+
 // Returns whether there was anything to refine.
 bool HierarchicalSolver::refine(const SolverJob& job) {
     Elements& elements = job.elements;
     const uint32_t old_size = elements.size();
     const Marks marks = mark(job);
+    const bool by_error = job.settings.radiosity.link_ratio == 0;
 
     // Elements are divided in their order and in that of the links, by one thread: their numbers are always the same.
     std::vector<Link> kept, fresh;
@@ -144,16 +165,11 @@ bool HierarchicalSolver::refine(const SolverJob& job) {
             kept.push_back(link);
             continue;
         }
-        const bool by_receiver = marks.parts[l] == Part::receiver;
-        const NodeId split = by_receiver ? link.receiver : link.source;
+        const NodeId split = marks.parts[l] == Part::receiver ? link.receiver : link.source;
         if (!is_cluster(split) && elements[split].leaf()) elements.divide(split);
-        const Children below = children(elements, split);
-        for (const NodeId part : std::span(below.ids, below.count)) {
-            Link next{by_receiver ? part : link.receiver, by_receiver ? link.source : part};
-            next.agreed = link.agreed / static_cast<float>(below.count);
-            next.allowed = allowed(link.receiver, static_cast<double>(brightness_[l]));
-            if (clusters_.may_see(elements, next.receiver, next.source)) fresh.push_back(next);
-        }
+        Link next = link;
+        next.allowed = allowed(link.receiver, static_cast<double>(brightness_[l]));
+        add_parts(elements, next, marks.parts[l], by_error ? kAtOnce : 1, fresh);
     }
     if (kept.size() == links_.size() && elements.size() == old_size) return false;
     job.solution.light.resize(elements.size());

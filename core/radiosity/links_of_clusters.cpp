@@ -8,7 +8,6 @@
 namespace trp {
 namespace {
 
-constexpr double kApart = 0.7;     // of their distance, what ends measure at most that light goes between from a point
 constexpr double kMonopole = 0.3;  // of the square of what they measure of it, what halves of the source leave out
 constexpr double kClose = 0.1;     // of all that could arrive, what may where ends are not apart
 constexpr double kMostScale = 16;  // of what would come from one point, the most that rays make of it
@@ -80,11 +79,12 @@ void LinkEvaluator::finish_cluster(Link& link, uint32_t number, const Ways& ways
     const double by_rays = std::min(factor_per_kernel(link) * sum / tries, greatest),
                  seen = found.looks > 0 ? found.seen : 1;
     NodeLight light = ways.lights[number];
-    link.room = both < kApart ? 0 : static_cast<float>(both * away * both * away);
+    const bool apart = clusters_.apart(elements_, link.receiver, link.source);
+    link.room = apart ? 0 : static_cast<float>(both * away * both * away);
     light.room += link.room;
     const double point = point_factor(link, light, ways.receivers[number]);
     double factor = point, error = 0;
-    if (both < kApart) {
+    if (apart) {
         error = seen * (monopole_error(link, light, ways.receivers[number]) +
                         kMonopole * both * both * std::max(point, by_rays));
     } else {
