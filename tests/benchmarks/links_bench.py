@@ -95,7 +95,7 @@ def drawing(points, growth):
 
 def main():
     parser = arguments(__doc__)
-    parser.add_argument("--fineness", type=int, nargs="+", default=[1, 2, 4, 8, 16], help="quads along each side")
+    parser.add_argument("--fineness", type=int, nargs="+", default=[1, 2, 4, 8, 16, 32], help="quads along each side")
     parser.add_argument("--svg", type=Path, metavar="FILE", help="the drawing")
     options = parser.parse_args()
     folder = options.build.resolve() / "bench"
