@@ -76,6 +76,7 @@ class HierarchicalSolver : public Solver {
     double measure(const SolverJob& job);
     // What of a link is divided when it is refined.
     enum class Part : uint8_t { none, receiver, source };
+    Part part_of_clusters(const Elements& elements, const Link& link) const;
     Part part_by_error(const Elements& elements, const Link& link, const LinkError& error) const;
     Part part_by_ratio(const Elements& elements, const Link& link, float ratio) const;
     struct Marks {

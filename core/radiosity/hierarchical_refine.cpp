@@ -64,14 +64,18 @@ double HierarchicalSolver::measure(const SolverJob& job) {
     return area > 0 ? sum / area : 0;
 }
 
+// Of a link with a cluster, that, or the larger of two, is divided.
+HierarchicalSolver::Part HierarchicalSolver::part_of_clusters(const Elements& elements, const Link& link) const {
+    return is_cluster(link.receiver) &&
+                   (!is_cluster(link.source) || extent(elements, link.receiver) >= extent(elements, link.source))
+               ? Part::receiver
+               : Part::source;
+}
+
 // What to do about a link: divide its receiver or its source, whichever its error is owed to and can be divided.
 HierarchicalSolver::Part HierarchicalSolver::part_by_error(const Elements& elements, const Link& link,
                                                            const LinkError& error) const {
-    const bool receiver = is_cluster(link.receiver), source = is_cluster(link.source);
-    if (receiver || source)
-        return receiver && (!source || extent(elements, link.receiver) >= extent(elements, link.source))
-                   ? Part::receiver
-                   : Part::source;
+    if (has_cluster(link)) return part_of_clusters(elements, link);
     const bool receivers = !elements[link.receiver].leaf() || may_divide(elements, link.receiver),
                sources = !elements[link.source].leaf();
     if (!receivers && !sources) return Part::none;
@@ -139,9 +143,8 @@ void HierarchicalSolver::add_parts(const Elements& elements, const Link& link, P
         next.agreed = link.agreed / static_cast<float>(below.count);
         next.allowed = link.allowed;
         if (!clusters_.may_see(elements, next.receiver, next.source)) continue;
-        const bool clustered = is_cluster(next.receiver) || is_cluster(next.source);
-        if (times > 1 && clustered && !clusters_.apart(elements, next.receiver, next.source))
-            add_parts(elements, next, part_by_error(elements, next, {}), times - 1, out);
+        if (times > 1 && has_cluster(next) && !clusters_.apart(elements, next.receiver, next.source))
+            add_parts(elements, next, part_of_clusters(elements, next), times - 1, out);
         else
             out.push_back(next);
     }

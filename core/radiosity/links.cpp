@@ -115,7 +115,7 @@ LinkEvaluator::Seen LinkEvaluator::seen_of(const Link& link, uint32_t number, co
     Seen out;
     double weights = 0, squares = 0, noise = 0;
     // With a cluster, rays say it.
-    const bool clustered = is_cluster(link.receiver) || is_cluster(link.source);
+    const bool clustered = has_cluster(link);
     const double per_kernel = clustered ? factor_per_kernel(link) * kLinkPoints / ways.tries[number] : 0;
     for (uint32_t r = 0; r < kLinkPoints; ++r) {
         const double exposed = static_cast<double>(ways.receivers[number][r].exposed);
@@ -158,7 +158,7 @@ double LinkEvaluator::Seen::chance(float agreed) const {
 
 uint32_t LinkEvaluator::more_rounds(const Link& link, const Seen& seen) const {
     const double chance = seen.mean * seen.chance(link.agreed), allowed = static_cast<double>(link.allowed);
-    if (seen.looks == 0 || !(chance > allowed) || is_cluster(link.receiver) || is_cluster(link.source)) return 0;
+    if (seen.looks == 0 || !(chance > allowed) || has_cluster(link)) return 0;
     // As the square root of the number, or, where all are alike, as the number.
     const double times = !seen.alike ? chance * chance / (allowed * allowed) : chance / allowed;
     return static_cast<uint32_t>(std::min(times * seen.looks / kOfLink, double{kMostRounds}));
@@ -256,7 +256,7 @@ uint64_t LinkEvaluator::look(std::span<const Link> links, std::span<const Round>
 }
 
 void LinkEvaluator::finish(Link& link, uint32_t number, const Ways& ways) {
-    if (is_cluster(link.receiver) || is_cluster(link.source)) return finish_cluster(link, number, ways);
+    if (has_cluster(link)) return finish_cluster(link, number, ways);
     const Places &receivers = ways.receivers[number], &sources = ways.sources[number];
     const double* const factors = &ways.factors[number * kLinkPoints];
     const auto lane_of = [&](uint32_t r, uint32_t k) { return number * kOfLink + r * kLinkPoints + k; };

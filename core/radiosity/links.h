@@ -29,6 +29,10 @@ struct Link {
     Vec3 factor() const { return tint * transfer[0]; }
 };
 
+inline bool has_cluster(const Link& link) {
+    return is_cluster(link.receiver) || is_cluster(link.source);
+}
+
 inline constexpr uint32_t kLinkPoints = 4;  // of each end: the middles of its quarters; rays go from each to each
 
 // One to a thread.

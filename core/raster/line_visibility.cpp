@@ -16,8 +16,8 @@ LineVisibility::Parts LineVisibility::parts_of(const Segment& s) const {
     const double dx = s.x[1] - s.x[0], dy = s.y[1] - s.y[0];
     const double length = std::max(std::abs(dx), std::abs(dy));
     const double count = std::max(1.0, std::ceil(length / kSpacing));
-    if (count <= kFew && !s.is_cut) return {count, 1, static_cast<int>(count) - 1, true, false};
-    if (count <= kFew) return {count, 0, static_cast<int>(count) - 1, false, false};
+    const bool whole = !s.is_cut;
+    if (count <= kFew) return {count, whole ? 1 : 0, static_cast<int>(count) - 1, whole, false};
     double from = 0, to = 1;
     const auto clip = [&](double begin, double step, double size) {
         const double low = -tile_.reach, high = size - 1 + tile_.reach;
@@ -62,8 +62,8 @@ void LineVisibility::test_lines(const PlacedCluster& cluster, const ClusterVerti
     planes_.test(vertices_, seen_vertices_);
     for (size_t n = 0; n < lines.size(); ++n) {
         const Parts& parts = parts_[n];
-        for (int k = parts.first; k <= parts.last; ++k)
-            add_point(cluster, lines[n], parts.place(k), ends_are_seen(parts, lines[n]) ? between_ : points_);
+        SurfacePoints& points = ends_are_seen(parts, lines[n]) ? between_ : points_;
+        for (int k = parts.first; k <= parts.last; ++k) add_point(cluster, lines[n], parts.place(k), points);
     }
     planes_.test(between_, seen_between_);
     planes_.test(points_, seen_points_);

@@ -99,8 +99,9 @@ uint64_t test_some(SeenPlanes& planes, const SurfacePoints& points, size_t i) {
         auto clear = hn::FirstN(di, hn::Lanes(d));
         for (int k = 0; k < 4; ++k) {
             const auto nothing = hn::Eq(keys[k], hn::Set(di, static_cast<int32_t>(kNothing)));
-            const VI slot =
-                hn::GatherIndex(di, look.slot_of, hn::IfThenZeroElse(nothing, hn::ShiftRight<kShift>(keys[k])));
+            const VI cluster = hn::IfThenZeroElse(nothing, hn::ShiftRight<kShift>(keys[k]));
+            const VI slot = hn::GatherIndex(di, reinterpret_cast<const int32_t*>(look.slots),
+                                            hn::Mul(cluster, hn::Set(di, sizeof(DrawnCluster) / sizeof(int32_t))));
             const auto own = hn::And(hn::Eq(slot, hn::Set(di, static_cast<int32_t>(points.slot))),
                                      hn::RebindMask(di, hn::Le(hn::GatherIndex(d, look.nearness, pixel(k)), bound)));
             clear = hn::And(clear, hn::Or(nothing, own));
@@ -226,10 +227,7 @@ SeenPlane plane_of(const ClusterVertices& v, const uint8_t corner[3]) {
 }  // namespace
 
 SeenPlanes::SeenPlanes(const DrawList& triangles, const Projection& projection)
-    : triangles_(triangles), projection_(projection), place_of_(triangles.clusters.size(), -1) {
-    slot_of_.reserve(triangles.clusters.size());
-    for (const DrawnCluster& cluster : triangles.clusters) slot_of_.push_back(static_cast<int32_t>(cluster.slot));
-}
+    : triangles_(triangles), projection_(projection), place_of_(triangles.clusters.size(), -1) {}
 
 void SeenPlanes::begin(const TileReach& tile, const VisibilityTile& visibility) {
     tile_ = tile;
@@ -249,7 +247,7 @@ SeenPlanes::Lookup SeenPlanes::lookup() const {
             -y0,
             static_cast<int32_t>(projection_.width()) - 1 - x0,
             static_cast<int32_t>(projection_.height()) - 1 - y0,
-            slot_of_.data(),
+            triangles_.clusters.empty() ? nullptr : &triangles_.clusters[0].slot,
             place_of_.data(),
             planes_.empty() ? nullptr : &planes_[0].x};
 }

@@ -57,7 +57,7 @@ class SeenPlanes {
         int32_t blocks_across;
         int32_t to_x, to_y;  // from the pixels of the tile of lines to those of the visibility tile
         int32_t first_x, first_y, last_x, last_y;  // the film's pixels, in those of the tile of lines
-        const int32_t* slot_of;                    // of each cluster
+        const uint32_t* slots;                     // of the clusters, one to each DrawnCluster
         const int32_t* place_of;                   // of each cluster's first plane, or −1
         const float* planes;
     };
@@ -77,7 +77,6 @@ class SeenPlanes {
     const Projection& projection_;
     TileReach tile_{};
     const VisibilityTile* visibility_ = nullptr;
-    std::vector<int32_t> slot_of_;   // by cluster
     std::vector<int32_t> place_of_;  // by cluster, in `planes_`; −1 where this tile has not needed it
     std::vector<uint32_t> needed_;   // the clusters that are there
     std::vector<SeenPlane> planes_;

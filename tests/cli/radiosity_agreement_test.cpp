@@ -1,15 +1,13 @@
 // All solvers of radiosity against path tracing of the scenes that come with the project, without what is not diffuse:
 // means over 8 x 8 pixels. SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "framing.h"
+#include "gltf_builder.h"
 #include "gltf_scene.h"
 
 namespace triptych::test {
@@ -21,27 +19,20 @@ constexpr uint32_t kWidth = 160, kHeight = 96, kBlock = 8;
 
 using Settings = std::vector<std::pair<const char*, std::string>>;
 
-// The scene of a .glb file with its highlights and mirrors taken away: a header and a chunk of JSON, the rest as it is.
+// The scene of a .glb file with its highlights and mirrors taken away. Such a file is a header of 12 bytes and two
+// chunks, of JSON and of the buffer, each after its length and its kind.
 cli::LoadedScene load_diffuse(const std::string& name) {
-    std::ifstream in(std::filesystem::path(TRIPTYCH_SCENES) / name, std::ios::binary);
-    const std::string file((std::istreambuf_iterator<char>(in)), {});
-    constexpr size_t kSizeAt = 8, kJsonSizeAt = 12, kJsonAt = 20;
+    const std::vector<unsigned char> bytes = read_bytes(std::filesystem::path(TRIPTYCH_SCENES) / name);
+    constexpr ptrdiff_t kLengthAt = 12, kJsonAt = 20, kChunkHeader = 8;
     uint32_t length = 0;
-    std::memcpy(&length, &file.at(kJsonSizeAt), sizeof length);
-    nlohmann::json gltf = nlohmann::json::parse(file.substr(kJsonAt, length));
-    for (nlohmann::json& material : gltf["materials"])
+    std::memcpy(&length, &bytes.at(kLengthAt), sizeof length);
+    const auto begin = bytes.begin() + kJsonAt, end = begin + length;
+    GltfBuilder file;
+    file.root = json::parse(begin, end);
+    file.binary.assign(end + kChunkHeader, bytes.end());
+    for (json& material : file.root["materials"])
         for (const char* coefficient : {"specular", "mirror"}) material["extras"]["triptych"][coefficient] = {0, 0, 0};
-    std::string json = gltf.dump();
-    json.resize((json.size() + 3) / 4 * 4, ' ');
-    std::string out = file.substr(0, kJsonAt) + json + file.substr(kJsonAt + length);
-    const auto size = static_cast<uint32_t>(out.size()), json_size = static_cast<uint32_t>(json.size());
-    std::memcpy(&out[kSizeAt], &size, sizeof size);
-    std::memcpy(&out[kJsonSizeAt], &json_size, sizeof json_size);
-    const std::filesystem::path path =
-        std::filesystem::temp_directory_path() / ("triptych_" + std::to_string(getpid()) + "_" + name);
-    std::ofstream(path, std::ios::binary) << out;
-    cli::LoadedScene loaded = cli::load_gltf(path, {}, 0);
-    std::filesystem::remove(path);
+    cli::LoadedScene loaded = cli::load_gltf(file.write(test_folder("radiosity_agreement_" + name), name), {}, 0);
     cli::complete_scene(loaded, kWidth, kHeight, 0);
     return loaded;
 }
