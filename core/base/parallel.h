@@ -1,54 +1,15 @@
 // Parallel work on oneTBB. Work runs in an Arena of the number of threads asked for; the caller's thread is not one of
-// them while a Worker drives the arena, so that it is free to hand on callbacks.
+// them while a thread of its own drives the arena, so that it is free to hand on callbacks.
 #pragma once
-
-#include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cstddef>
-#include <exception>
 #include <functional>
+#include <memory>
 #include <thread>
 #include <vector>
 
-#ifdef __SANITIZE_THREAD__
-#include <sanitizer/tsan_interface.h>
-#endif
-
 namespace trp {
-
-// Tells the thread sanitizer what it cannot see, as oneTBB is not built for it: work begins after what its caller did
-// before, and the caller goes on after the work. Nothing in other builds.
-class ForkJoin {
-  public:
-    ForkJoin() { release(); }
-    ~ForkJoin() { acquire(); }
-    ForkJoin(const ForkJoin&) = delete;
-    ForkJoin& operator=(const ForkJoin&) = delete;
-    template <class Work>
-    auto wrap(Work& work) {
-        return [this, &work](auto&&... arguments) {
-            acquire();
-            work(arguments...);
-            release();
-        };
-    }
-
-  private:
-#ifdef __SANITIZE_THREAD__
-    void acquire() {
-        __tsan_acquire(this);
-    }
-    void release() {
-        __tsan_release(this);
-    }
-#else
-    void acquire() {}
-    void release() {}
-#endif
-};
 
 // The number of threads meant by `requested`: all cores where it is 0.
 unsigned thread_count(unsigned requested);
@@ -56,27 +17,24 @@ unsigned thread_count(unsigned requested);
 class Arena {
   public:
     explicit Arena(unsigned threads);
-    template <class Work>
-    void run(Work&& work) {
-        ForkJoin fork;
-        arena_.execute(fork.wrap(work));
-    }
+    ~Arena();
+    Arena(const Arena&) = delete;
+    Arena& operator=(const Arena&) = delete;
+    void run(const std::function<void()>& work);
 
   private:
-    tbb::global_control limit_;  // TBB's own limit is the number of cores
-    tbb::task_arena arena_;
+    struct Threads;
+    std::unique_ptr<Threads> threads_;
 };
 
 // Calls work(begin, end) over [0, count) in ranges of about `grain`, within the current arena.
-template <class Work>
-void parallel_ranges(size_t count, size_t grain, Work&& work) {
-    auto range_work = [&](const tbb::blocked_range<size_t>& r) { work(r.begin(), r.end()); };
-    ForkJoin fork;
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, count, grain), fork.wrap(range_work));
-}
+void parallel_ranges(size_t count, size_t grain, const std::function<void(size_t begin, size_t end)>& work);
 
-// Sorts by runs of equal length, which are then merged two by two, within the current arena: oneTBB's own sort is
-// nothing that ForkJoin could tell the sanitizer about.
+// Calls work() so many times, once on each of as many threads of the current arena as are free.
+void parallel_workers(unsigned count, const std::function<void()>& work);
+
+// Sorts by runs of equal length, which are then merged two by two, within the current arena: oneTBB's own sort would
+// have its code in every file that sorts (see parallel.cpp).
 template <class T, class Less = std::less<T>>
 void parallel_sort(std::vector<T>& values, Less less = {}) {
     constexpr size_t kRuns = 16, kShort = 4096;
@@ -99,14 +57,6 @@ void parallel_sort(std::vector<T>& values, Less less = {}) {
         });
         values.swap(merged);
     }
-}
-
-// Calls work() once on each of so many threads of the current arena.
-template <class Work>
-void parallel_workers(unsigned count, Work&& work) {
-    auto worker = [&](unsigned) { work(); };
-    ForkJoin fork;
-    tbb::parallel_for(0u, count, fork.wrap(worker), tbb::simple_partitioner());
 }
 
 // Denormals cost a hundred times as much as other floats and mean nothing in a picture: zero while this stands.

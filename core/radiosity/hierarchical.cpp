@@ -54,7 +54,7 @@ bool HierarchicalSolver::begin(const SolverJob& job) {
                 smallest = clusters_.clusters.empty() ? 0 : 2 * clusters_.clusters[0].radius * kSmallest;
     least_area_ = size > 0 ? size * size / 4 : smallest * smallest;
     // What is allowed to chance, by what surfaces emit.
-    job.solution.slopes.assign(elements.size(), {});
+    job.solution.slopes.assign(elements.size(), {Vec3(0, 0, 0), Vec3(0, 0, 0)});
     measure(job);
     std::vector<Link> links = first_links(elements);
     for (Link& link : links) link.allowed = allowed(link.receiver, brightness(node(link.source).radiosity.mean));

@@ -36,7 +36,7 @@ class HierarchicalSolver : public Solver {
 
   private:
     struct Node {
-        Linear radiosity, gathered;
+        Linear radiosity;
         PlaneCell cell;         // of an element
         float x = 0, y = 0;     // from the middle of the element above, along the facet's axes
         float variance = 0;     // of the brightness of its parts, from the linear one
@@ -113,7 +113,8 @@ class HierarchicalSolver : public Solver {
     RootColors root_colors_;
     RootLight root_light_;
     MirrorRows mirrors_;
-    std::vector<Vec3d> mirrored_;  // irradiance by mirrors, by element
+    std::vector<Linear> gathered_;  // irradiance by links and clusters, by element
+    std::vector<Vec3d> mirrored_;   // and by mirrors
     float least_area_ = 0;
     size_t most_ = kMostLinks;
     bool begun_ = false;

@@ -64,7 +64,6 @@ void HierarchicalSolver::light_clusters(const Elements& elements) {
 void HierarchicalSolver::gather(const Elements& elements) {
     brightness_.resize(links_.size());
     light_clusters(elements);
-    mirrored_.resize(element_nodes_.size());
     parallel_ranges(element_nodes_.size(), 256, [&](size_t begin, size_t end) {
         for (auto k = static_cast<uint32_t>(begin); k < end; ++k) {
             Linear sum;
@@ -89,7 +88,7 @@ void HierarchicalSolver::gather(const Elements& elements) {
                                         source.x * static_cast<double>(link.transfer[3 * r + 1]) +
                                         source.y * static_cast<double>(link.transfer[3 * r + 2]));
             }
-            element_nodes_[k].gathered = sum;
+            gathered_[k] = sum;
             mirrored_[k] = mirrors_.irradiance(
                 k, [&](uint32_t source) -> const Vec3d& { return element_nodes_[source].radiosity.mean; });
         }
@@ -97,7 +96,7 @@ void HierarchicalSolver::gather(const Elements& elements) {
     parallel_ranges(clusters_.roots.size(), 1024, [&](size_t begin, size_t end) {
         for (size_t k = begin; k < end; ++k) {
             const uint32_t root = clusters_.roots[k];
-            element_nodes_[root].gathered += root_light_.at(k, axes_of(elements.facet_of(root)));
+            gathered_[root] += root_light_.at(k, axes_of(elements.facet_of(root)));
         }
     });
 }
@@ -112,7 +111,7 @@ void HierarchicalSolver::find_sums(const Elements& elements) {
     for (uint32_t i = 0; i < elements.size(); ++i) {  // wholes are before their parts
         element_nodes_[i].radiosity = kept[i];
         Linear& all = above[i];
-        all += element_nodes_[i].gathered;
+        all += gathered_[i];
         sums_[i] = brightness(all.mean);
         for (uint32_t k = 0; k < 4 && !elements[i].leaf(); ++k) {
             const uint32_t child = elements[i].first_child + k;
@@ -128,6 +127,8 @@ void HierarchicalSolver::add_nodes(const SolverJob& job) {
     const Elements& elements = job.elements;
     const size_t old_size = element_nodes_.size();
     element_nodes_.resize(elements.size());
+    gathered_.resize(elements.size());
+    mirrored_.resize(elements.size(), Vec3d(0, 0, 0));
     for (auto i = static_cast<uint32_t>(old_size); i < elements.size(); ++i)
         element_nodes_[i].cell = plane_cell(elements, i);
     for (uint32_t i = 0; i < elements.size(); ++i) {
@@ -159,7 +160,7 @@ void HierarchicalSolver::set_leaf(const SolverJob& job, uint32_t leaf, Linear ar
         const double share = kMostSum / sums_[leaf];
         arriving.mean *= share, arriving.x *= share, arriving.y *= share;
     }
-    if (leaf < mirrored_.size()) arriving.mean += mirrored_[leaf];
+    arriving.mean += mirrored_[leaf];
     // Lines of coarse elements may fall below 0 at a part's middle.
     for (int c = 0; c < 3; ++c) arriving.mean[c] = std::max(arriving.mean[c], 0.0);
     solution.irradiance[leaf] = arriving.mean;
@@ -187,7 +188,7 @@ void HierarchicalSolver::set_leaf(const SolverJob& job, uint32_t leaf, Linear ar
 void HierarchicalSolver::push_pull(const SolverJob& job, NodeId id, const Linear& above, ErrorAbove error) {
     Node& n = node(id);
     Linear irradiance = above;
-    irradiance += n.gathered;
+    if (!is_cluster(id)) irradiance += gathered_[id];
     error.squares += static_cast<double>(n.own_error);
     error.coherent += static_cast<double>(n.own_coherent);
     n.coherent = static_cast<float>(error.coherent);

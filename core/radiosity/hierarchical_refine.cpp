@@ -176,7 +176,7 @@ bool HierarchicalSolver::refine(const SolverJob& job) {
     }
     if (kept.size() == links_.size() && elements.size() == old_size) return false;
     job.solution.light.resize(elements.size());
-    job.solution.irradiance.resize(elements.size());
+    job.solution.irradiance.resize(elements.size(), Vec3d(0, 0, 0));
     find_covered(elements, job.lighting(), old_size);
     light_elements(job.lighting(), old_size, std::span(job.solution.light).subspan(old_size));
     evaluate(job, fresh);
@@ -188,7 +188,7 @@ bool HierarchicalSolver::refine(const SolverJob& job) {
         job.solution.irradiance.resize(old_size);
         return false;
     }
-    job.solution.slopes.resize(elements.size());
+    job.solution.slopes.resize(elements.size(), {Vec3(0, 0, 0), Vec3(0, 0, 0)});
     add_nodes(job);
     kept.insert(kept.end(), fresh.begin(), fresh.end());
     links_.swap(kept);

@@ -155,13 +155,15 @@ void MatrixSolver::sweep(const SolverJob& job) {
             const auto k = static_cast<int>(c);
             for (size_t i = 0; i < count_; ++i) {
                 const auto element = static_cast<uint32_t>(i);
+                const ElementLight& light = solution.light[element];
                 const double* const row = &matrix[i * count_];
                 double sum = 0;
                 for (size_t j = 0; j < count_; ++j) sum += row[j] * radiosity_[j][k];
                 const double area = job.elements[element].exposed_area(), irradiance = area > 0 ? sum / area : 0;
                 const double before = radiosity_[i][k];
                 solution.irradiance[i][k] = irradiance;
-                radiosity_[i][k] = solution.radiosity(element)[k];
+                radiosity_[i][k] =
+                    solution.emitted(element)[k] + static_cast<double>(light.reflectance[k]) * irradiance;
                 residual[c] = std::max(residual[c], std::abs(radiosity_[i][k] - before));
                 greatest[c] = std::max(greatest[c], radiosity_[i][k]);
             }

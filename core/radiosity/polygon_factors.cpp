@@ -1,9 +1,7 @@
 // Point to polygon: the contour formula of Lambert, Photometria, 1760, as in Baum, Rushmeier, Winget, "Improving
 // Radiosity Solutions Through the Use of Analytically Determined Form-Factors", SIGGRAPH 1989.
-// Polygon to polygon: near pairs by the double contour integral (1/2π) ∮∮ ln r dr_a·dr_b of Sparrow, "A New and Simpler
-// Formulation for Radiative Angle Factors", J. Heat Transfer 1963, as in Goral, Torrance, Greenberg, Battaile,
-// "Modeling the Interaction of Light Between Diffuse Surfaces", SIGGRAPH 1984; far pairs by Gauss's rule on one
-// polygon, of the above, or on both, of the kernel.
+// Polygon to polygon: near pairs by the contour integral; far pairs by Gauss's rule on one polygon, of the above, or on
+// both, of the kernel.
 #include "radiosity/polygon_factors.h"
 
 #include <algorithm>
@@ -12,6 +10,9 @@
 #include <limits>
 #include <numbers>
 #include <vector>
+
+#include "radiosity/contour_integral.h"
+#include "radiosity/gauss_rule.h"
 
 namespace trp {
 namespace {
@@ -110,171 +111,6 @@ double lambert(const Vec3d& point, const Vec3d& normal, Corners polygon) {
     return sum / (2 * pi);
 }
 
-// ---- Gauss's rules ----
-
-struct Rule {  // on 0 to 1
-    std::array<double, 16> at{}, weight{};
-};
-
-// The Gauss-Legendre rule of n points, 1 to 16.
-const Rule& gauss(int n) {
-    static const std::array<Rule, 17> rules = [] {
-        std::array<Rule, 17> made{};
-        for (int order = 1; order <= 16; ++order)
-            for (int i = 0; i < order; ++i) {
-                double x = std::cos(pi * (i + 0.75) / (order + 0.5)), slope = 1;
-                for (int step = 0; step < 8; ++step) {  // Newton's, on the polynomial by its recurrence
-                    double p = 1, before = 0;
-                    for (int k = 1; k <= order; ++k) {
-                        const double next = ((2 * k - 1) * x * p - (k - 1) * before) / k;
-                        before = p, p = next;
-                    }
-                    slope = order * (x * p - before) / (x * x - 1);
-                    x -= p / slope;
-                }
-                const auto at = static_cast<size_t>(i);
-                made[static_cast<size_t>(order)].at[at] = 0.5 * (1 + x);
-                made[static_cast<size_t>(order)].weight[at] = 1 / ((1 - x * x) * slope * slope);
-            }
-        return made;
-    }();
-    return rules[static_cast<size_t>(n)];
-}
-
-// ---- Near pairs: the contour integral ----
-
-// Half the points err by up to 8e-10 of the product of the perimeters (measured as in polygon_to_polygon).
-constexpr double kCoarseError = 2e-9;
-constexpr double kParallel = 1e-13;  // a sine below it
-
-struct Edge {
-    Vec3d from, to, direction;
-    double length;
-};
-
-std::vector<Edge> edges_of(Corners polygon, const Vec3d& origin, double scale) {
-    std::vector<Edge> edges;
-    edges.reserve(polygon.size());
-    Vec3d from = (polygon.back() - origin) * scale;
-    for (const Vec3d& corner : polygon) {
-        const Vec3d to = (corner - origin) * scale, along = to - from;
-        const double length = along.length();
-        if (length > 0) edges.push_back({from, to, along / length, length});
-        from = to;
-    }
-    return edges;
-}
-
-// ∫ ln |x − y| dy over an edge.
-double log_along(const Vec3d& x, const Edge& edge) {
-    const Vec3d r = x - edge.from, s = x - edge.to;
-    const double lower = -r.dot(edge.direction), upper = -s.dot(edge.direction);
-    const double r2 = r.length2(), s2 = s.length2();
-    const double away = r.cross(edge.direction).length();
-    double sum = -edge.length + away * std::atan2(away * edge.length, away * away + lower * upper);
-    if (s2 > 0) sum += 0.5 * upper * std::log(s2);
-    if (r2 > 0) sum -= 0.5 * lower * std::log(r2);
-    return sum;
-}
-
-// ∫∫ ln r over two parallel edges, b running as a does where `sense` is 1 and against it where −1: the second
-// difference of ∫∫ ½ ln (u² + h²) du du.
-double log_between_parallel(const Edge& a, const Edge& b, double sense) {
-    const Vec3d apart = (b.from + b.to - a.from - a.to) * 0.5;
-    const double h = apart.cross(a.direction).length(), h2 = h * h;
-    const auto twice = [&](double u) {
-        const double r2 = u * u + h2;
-        if (r2 == 0) return 0.0;
-        return 0.25 * (u * u - h2) * std::log(r2) - 0.75 * u * u + (h > 0 ? h * u * std::atan(u / h) : 0);
-    };
-    const Vec3d &first = sense > 0 ? b.from : b.to, &second = sense > 0 ? b.to : b.from;
-    return twice((first - a.to).dot(a.direction)) + twice((second - a.from).dot(a.direction)) -
-           twice((first - a.from).dot(a.direction)) - twice((second - a.to).dot(a.direction));
-}
-
-// ∫∫ ln r over any two edges: along `inner` in closed form, along `outer` by Gauss's rule on panels that shrink
-// towards the three places where the inner integral has a branch point: across from inner's ends, and where the lines
-// are closest. The rule of n points errs by about ρ^−2n, ρ the sum of the semiaxes of the ellipse, with foci at the
-// panel's ends, through the nearest of these; `semiaxis` below is the major one, in half panels.
-double log_between(const Edge& outer, const Edge& inner, double sine, bool coarse) {
-    const Vec3d r = inner.from - outer.from, s = inner.to - outer.from;
-    struct Branch {
-        double along = 1e9, away = 0;
-    };
-    std::array<Branch, 3> branches = {{{r.dot(outer.direction), r.cross(outer.direction).length()},
-                                       {s.dot(outer.direction), s.cross(outer.direction).length()}}};
-    if (sine >= kParallel) {
-        const Vec3d across = outer.direction.cross(inner.direction) / sine;
-        branches[2] = {r.dot(inner.direction.cross(across)) / sine, std::abs(r.dot(across)) / sine};
-    }
-    // Panels this small may hold the branch point itself: u ln u and |u| are integrable, and it errs by its square.
-    const double smallest = outer.length * (coarse ? 0x1p-10 : 0x1p-20);
-
-    std::array<std::array<double, 2>, 24> waiting;
-    size_t count = 0;
-    waiting[count++] = {0, outer.length};
-    double sum = 0;
-    while (count > 0) {
-        const auto [start, end] = waiting[--count];
-        double semiaxis = 1e9;
-        for (const auto& [along, away] : branches) {
-            const double to_start = along - start, to_end = along - end, away2 = away * away;
-            semiaxis =
-                std::min(semiaxis,
-                         (std::sqrt(to_start * to_start + away2) + std::sqrt(to_end * to_end + away2)) / (end - start));
-        }
-        if (semiaxis < 1.5 && end - start > smallest) {
-            const double middle = 0.5 * (start + end);
-            waiting[count++] = {start, middle};
-            waiting[count++] = {middle, end};
-            continue;
-        }
-        const int n = (semiaxis > 20 ? 4 : semiaxis > 2.99 || end - start <= smallest ? 8 : 16) / (coarse ? 2 : 1);
-        const Rule& rule = gauss(n);
-        double part = 0;
-        for (size_t i = 0; i < static_cast<size_t>(n); ++i)
-            part +=
-                rule.weight[i] * log_along(outer.from + outer.direction * (start + (end - start) * rule.at[i]), inner);
-        sum += part * (end - start);
-    }
-    return sum;
-}
-
-double contour_integral(Corners a, Corners b, double relative_error) {
-    // ln r is small and of both signs in units of the whole.
-    const Vec3d& origin = a[0];
-    double size2 = 0;
-    for (const Corners polygon : {a, b})
-        for (const Vec3d& p : polygon) size2 = std::max(size2, (p - origin).length2());
-    const double scale = 1 / std::sqrt(size2);
-    const std::vector<Edge> of_a = edges_of(a, origin, scale), of_b = edges_of(b, origin, scale);
-    // The difference of the parallel edges' closed form leaves 1e-16 of the whole's square, too much for a short edge.
-    const double shortest2 = 1e-14 / std::max(relative_error, 1e-12);
-    const auto integral = [&](bool coarse) {
-        double sum = 0;
-        for (const Edge& p : of_a)
-            for (const Edge& q : of_b) {
-                const double cosine = p.direction.dot(q.direction), sine = p.direction.cross(q.direction).length();
-                if (std::abs(cosine) < kRounding) continue;
-                const double shorter = std::min(p.length, q.length);
-                if (sine < kParallel && shorter * shorter > shortest2)
-                    sum += log_between_parallel(p, q, cosine > 0 ? 1 : -1) * (cosine > 0 ? 1 : -1);
-                else
-                    sum += cosine *
-                           (p.length < q.length ? log_between(p, q, sine, coarse) : log_between(q, p, sine, coarse));
-            }
-        return sum / (2 * pi * scale * scale);
-    };
-    if (relative_error >= 1e-5) {
-        double around_a = 0, around_b = 0;
-        for (const Edge& p : of_a) around_a += p.length;
-        for (const Edge& q : of_b) around_b += q.length;
-        const double sum = integral(true);
-        if (sum * relative_error > kCoarseError * around_a * around_b / (scale * scale)) return sum;
-    }
-    return integral(false);
-}
-
 // ---- Far pairs: Gauss's rule on a polygon ----
 
 // A polygon as a fan of quads: its own corners, or three and the last twice.
@@ -293,7 +129,7 @@ Quad quad_of(Corners polygon, size_t i) {
 // The bilinear map's area is signed: where a concave polygon's quads overlap, they cancel.
 template <typename Visit>
 void visit_nodes(Corners polygon, const Vec3d& normal, const std::array<int, 2>& order, const Visit& visit) {
-    const Rule &rule_u = gauss(order[0]), &rule_v = gauss(order[1]);
+    const GaussRule &rule_u = gauss_rule(order[0]), &rule_v = gauss_rule(order[1]);
     for (size_t k = 0; k < quad_count(polygon); ++k) {
         const auto [p] = quad_of(polygon, k);
         const Vec3d u0 = p[1] - p[0], v0 = p[3] - p[0], uv = p[2] - p[3] - u0;

@@ -49,7 +49,7 @@ bool Radiosity::run(const RenderEvents& events, std::atomic<bool>& cancelled, co
         progress.seconds_left = -1;
         progress.pass = statistics_.steps;
         progress.pass_count = settings.radiosity.iterations;
-        progress.stage = elements_ ? "Solving" : "Preparing";
+        progress.stage = stage_;
         try {
             if (!events.progress(progress)) cancelled = true;
         } catch (...) {
@@ -87,6 +87,7 @@ void Radiosity::make_elements(std::atomic<bool>& cancelled) {
     if (cancelled) return;
     elements_ = std::move(elements);
     solution_ = std::move(solution);
+    stage_ = "Solving";
     warn_of_clamped();
 }
 
@@ -189,7 +190,7 @@ std::shared_ptr<const ShownSolution> Radiosity::make_shown(const RadiositySettin
     vertices();
     out->vertices = vertices_;
     out->elements = shown_ ? shown_->elements : std::make_shared<const Elements>(*elements_);
-    out->leaves.resize(elements_->size());
+    out->leaves.resize(elements_->size(), Vec3(0, 0, 0));
     if (view.view == RadiositySettings::View::form_factors) {
         show_form_factors(view.view_element, *out);
         return out;

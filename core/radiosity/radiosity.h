@@ -69,7 +69,9 @@ class Radiosity {
     SolverStatistics statistics_;
     std::unique_ptr<Solver> solver_;
     std::mutex advancing_;
+    // For progress, read while the solver runs.
     std::atomic<double> fraction_{0};
+    std::atomic<const char*> stage_{"Preparing"};
     std::vector<Warning> warnings_;
     double seconds_ = 0;
     bool solved_ = false;

@@ -35,8 +35,8 @@ struct Solution {
 
 struct SolverStatistics {
     std::atomic<uint64_t> rays{0};
+    std::atomic<uint32_t> steps{0};  // read while the solver runs
     uint64_t links = 0;
-    uint32_t steps = 0;
     double residual = 0;   // of the equation, or the estimated error, or the share that is unshot: as the solver says
     double wanted = 0;     // the residual that was asked for, where the solver may have to end before
     bool limited = false;  // it ended at a limit, before what was asked for

@@ -203,6 +203,31 @@ TEST(RadiosityInspection, LuxAreWattsInAnotherUnit) {
     EXPECT_GT(std::abs(mean(picture("illuminance", "683"), 2) - mean(lux, 2)), 0.01);
 }
 
+// What divided elements have is nothing that is shown.
+TEST(RadiosityInspection, TheScaleEndsAtTheBrightestElement) {
+    Room room;
+    Solution solution(room, {{"radiosity.tolerance", "0.02"}});
+    solution.solve();
+    const std::vector<double> irradiance = [&] {
+        std::vector<double> out;
+        const std::vector<float> all = solution.read("irradiance", 3);
+        for (size_t k = 0; k < all.size(); k += 3)
+            out.push_back(0.2126 * static_cast<double>(all[k]) + 0.7152 * static_cast<double>(all[k + 1]) +
+                          0.0722 * static_cast<double>(all[k + 2]));
+        return out;
+    }();
+    const auto picture = [&](const std::string& scale) {
+        Render render(room, 64, 48,
+                      {{"radiosity.view", "false_color"}, {"radiosity.view_scale", scale}, {"radiosity.legend", "off"}},
+                      {}, "radiosity");
+        check(trp_render_set_radiosity(render, solution));
+        return render.run().read();
+    };
+    const Image known = picture(std::to_string(*std::max_element(irradiance.begin(), irradiance.end())));
+    const Image found = picture("0");
+    for (size_t k = 0; k < known.values.size(); ++k) EXPECT_NEAR(found.values[k], known.values[k], 1e-3);
+}
+
 TEST(RadiosityInspection, TheLegendShowsTheColoursAndLeavesTheRest) {
     Room room;
     Solution solution(room, kMatrix);

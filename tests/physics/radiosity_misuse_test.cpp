@@ -211,6 +211,9 @@ TEST(RadiosityMisuse, StoppedAtAnyMomentItIsValidAndGoesOn) {
     Random random{std::mt19937(8)};
     Scene scene;
     make_room(scene, random, true);
+    TrpCallbacks callbacks{};
+    callbacks.struct_size = sizeof callbacks;
+    callbacks.progress = [](void*, const TrpProgress*) { return 1; };
     for (const std::string solver : kSolvers) {
         Solution::Settings settings = by(solver, "hemisphere");
         settings.insert(settings.end(), {{"radiosity.element_size", solver == "hierarchical" ? "0" : "0.2"},
@@ -231,7 +234,7 @@ TEST(RadiosityMisuse, StoppedAtAnyMomentItIsValidAndGoesOn) {
                     std::this_thread::sleep_for(std::chrono::microseconds(100));
                 }
             });
-            const TrpStatus status = trp_radiosity_solve(solution, nullptr);
+            const TrpStatus status = trp_radiosity_solve(solution, &callbacks);
             done = true;
             stopper.join();
             if (status == TRP_OK) break;
