@@ -15,6 +15,8 @@ namespace {
 
 constexpr uint32_t kSide = 4, kPlaces = kSide * kSide;  // of an element
 constexpr double kByChance = 2 * 2.0 / 13;  // of what a line does not explain, what it may by chance, twice the mean
+constexpr double kSureChance = 3;           // times its mean, what chance seldom does: what is beyond is no chance
+constexpr float kEven = 1e-3f;              // of an emission, differences that are rounding
 constexpr double kNoise = 0.05;             // of the lamps' mean light, and of an element's own, what chance may do
 constexpr double kMostPairs = 8;            // of samples of each light, at each place
 
@@ -86,6 +88,7 @@ ElementLight mean(const Elements& elements, uint32_t element, int first, const S
     if (covered == kAllCovered) return out;
     const float share = 1.0f / static_cast<float>(kPlaces - static_cast<uint32_t>(std::popcount(covered)));
     double squares = 0, chance = 0;
+    Vec3 emitted(0, 0, 0);  // mean of squares
     Moments places;
     Vec3 by_x(0, 0, 0), by_y(0, 0, 0);
     float x_mean = 0, y_mean = 0;
@@ -99,12 +102,14 @@ ElementLight mean(const Elements& elements, uint32_t element, int first, const S
             out.clamped |= reflectance[c] > kGreatestReflectance;
             out.reflectance[c] += share * std::clamp(reflectance[c], 0.0f, kGreatestReflectance);
         }
-        out.emission += w.coefficients.emission.get(i) * (share * alpha * std::numbers::pi_v<float>);
+        const Vec3 emission = w.coefficients.emission.get(i) * (alpha * std::numbers::pi_v<float>);
+        out.emission += emission * share;
+        emitted += emission * emission * share;
         const float half = 0.5f / static_cast<float>(w.pairs);
         const Vec3 irradiance = (w.irradiance.get(i) + w.again.get(i)) * half;
         const float differs = luminance(w.irradiance.get(i) - w.again.get(i)) * half;
         chance += static_cast<double>(differs * differs * share);
-        if (irradiance != Vec3(0, 0, 0) || w.coefficients.emission.get(i) != Vec3(0, 0, 0))
+        if (irradiance != Vec3(0, 0, 0) || emission != Vec3(0, 0, 0))
             out.lit = static_cast<uint16_t>(out.lit | 1u << k);
         out.irradiance += irradiance * share;
         squares += static_cast<double>(luminance(irradiance) * luminance(irradiance) * share);
@@ -128,7 +133,10 @@ ElementLight mean(const Elements& elements, uint32_t element, int first, const S
     const double bright = luminance(out.irradiance),
                  explained = places.of(luminance(out.irradiance_x), luminance(out.irradiance_y)),
                  rest = std::max(squares - bright * bright - explained, 0.0);
-    out.unevenness = static_cast<float>(std::sqrt(std::max(rest - chance, 0.0)));
+    out.unevenness = static_cast<float>(std::sqrt(std::max(rest - kSureChance * chance, 0.0)));
+    for (int c = 0; c < 3; ++c)
+        out.texture = std::max(out.texture, std::sqrt(std::max(emitted[c] - out.emission[c] * out.emission[c], 0.0f)));
+    if (out.texture < kEven * luminance(out.emission)) out.texture = 0;
     out.noise = static_cast<float>(std::sqrt(chance * static_cast<double>(share)));
     const auto sure = static_cast<float>(std::max(1 - kByChance * rest / std::max(explained, 1e-300), 0.0));
     out.irradiance_x *= sure;

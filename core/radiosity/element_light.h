@@ -16,6 +16,7 @@ struct ElementLight {
     Vec3 irradiance{0, 0, 0};                           // of lamps, W/m²
     Vec3 irradiance_x{0, 0, 0}, irradiance_y{0, 0, 0};  // what it changes by per metre along the facet's PlaneAxes
     float unevenness = 0;  // the standard deviation of the irradiance from that over the element, as luminance
+    float texture = 0;     // the standard deviation of the emission over the element, of the colour with the greatest
     float noise = 0;       // the standard deviation of the irradiance by chance, as luminance
     uint16_t lit = 0;      // the places that have an emission or light of lamps, a bit to each
     bool clamped = false;  // a reflectance of 1 or more was met

@@ -5,11 +5,13 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "radiosity/contacts.h"
 
 namespace trp {
 namespace {
 
 constexpr float kSmallest = 1.0f / 1024;  // side of an element, of the scene's extent, where no size is given
+constexpr float kLeastAtContacts = 4;     // of that, what walls that are thinner divide elements to
 
 }  // namespace
 
@@ -58,11 +60,16 @@ bool HierarchicalSolver::begin(const SolverJob& job) {
     measure(job);
     std::vector<Link> links = first_links(elements);
     for (Link& link : links) link.allowed = allowed(link.receiver, brightness(node(link.source).radiosity.mean));
-    evaluate(job, links);
     mirrors_.add(job.lighting(), 0, job.solution.light);
-    if (job.cancelled) return false;
+    const uint32_t roots = elements.size();
+    if (job.settings.radiosity.link_ratio == 0) {  // which goes by size and distance alone
+        const float least = kLeastAtContacts * std::sqrt(least_area_);
+        across_walls_ = divide_at(find_contacts(job.lighting()), least, job.elements);
+        balance(job.elements);
+    }
+    if (!add_elements(job, roots, links)) return false;
     links_ = std::move(links);
-    most_ = std::max(kMostLinks, 8 * size_t{elements.size()});
+    most_ = std::max(kMostLinks, 8 * size_t{roots}) + (elements.size() - roots);
     begun_ = true;
     return true;
 }
@@ -77,11 +84,16 @@ void HierarchicalSolver::evaluate(const SolverJob& job, std::vector<Link>& links
     });
 }
 
+bool HierarchicalSolver::is_within_tolerance(const SolverJob& job) const {
+    return job.statistics.residual <= tolerance_ &&
+           std::none_of(links_.begin(), links_.end(), [&](const Link& link) { return leads_across_walls(link); });
+}
+
 bool HierarchicalSolver::step(const SolverJob& job) {
     const bool by_error = job.settings.radiosity.link_ratio == 0;
     if (!begun_) {
         if (!begin(job)) return true;
-    } else if ((by_error && job.statistics.residual <= tolerance_) || is_full() || !refine(job)) {
+    } else if ((by_error && is_within_tolerance(job)) || is_full() || !refine(job)) {
         return job.cancelled;
     }
     solve(job);
@@ -89,7 +101,7 @@ bool HierarchicalSolver::step(const SolverJob& job) {
     job.statistics.links = links_.size();
     job.statistics.residual = std::sqrt(measure(job));
     job.statistics.wanted = tolerance_;
-    const bool done = by_error && job.statistics.residual <= tolerance_;
+    const bool done = by_error && is_within_tolerance(job);
     job.statistics.limited = is_full() && !done;
     return !done && !is_full();
 }

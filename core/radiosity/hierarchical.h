@@ -77,7 +77,12 @@ class HierarchicalSolver : public Solver {
     // What of a link is divided when it is refined.
     enum class Part : uint8_t { none, receiver, source };
     Part part_of_clusters(const Elements& elements, const Link& link) const;
-    Part part_by_error(const Elements& elements, const Link& link, const LinkError& error) const;
+    Part part_by_error(const SolverJob& job, const Link& link, const LinkError& error) const;
+    // Whether an end is in two rooms, and a part of it hidden: that is the other room, and nothing like the rest.
+    bool leads_across_walls(const Link& link) const {
+        return link.hidden > 0 && (is_across(link.receiver) || is_across(link.source));
+    }
+    bool is_across(NodeId id) const { return !is_cluster(id) && id < across_walls_.size() && across_walls_[id]; }
     Part part_by_ratio(const Elements& elements, const Link& link, float ratio) const;
     struct Marks {
         std::vector<Part> parts;      // by link
@@ -85,7 +90,10 @@ class HierarchicalSolver : public Solver {
     };
     Marks mark(const SolverJob& job) const;
     void add_parts(const Elements& elements, const Link& link, Part part, int times, std::vector<Link>& out) const;
+    void balance(Elements& elements) const;
+    bool add_elements(const SolverJob& job, uint32_t first, std::vector<Link>& fresh);
     bool refine(const SolverJob& job);
+    bool is_within_tolerance(const SolverJob& job) const;
     bool is_full() const { return links_.size() + element_nodes_.size() > most_; }
     float extent(const Elements& elements, NodeId id) const;
     struct Children {
@@ -113,8 +121,9 @@ class HierarchicalSolver : public Solver {
     RootColors root_colors_;
     RootLight root_light_;
     MirrorRows mirrors_;
-    std::vector<Linear> gathered_;  // irradiance by links and clusters, by element
-    std::vector<Vec3d> mirrored_;   // and by mirrors
+    std::vector<Linear> gathered_;       // irradiance by links and clusters, by element
+    std::vector<Vec3d> mirrored_;        // and by mirrors
+    std::vector<uint8_t> across_walls_;  // by element, of the first ones: 1 where it reaches into two rooms
     float least_area_ = 0;
     size_t most_ = kMostLinks;
     bool begun_ = false;

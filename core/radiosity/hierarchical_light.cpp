@@ -181,6 +181,7 @@ void HierarchicalSolver::set_leaf(const SolverJob& job, uint32_t leaf, Linear ar
     const double uneven = kUnevenness * static_cast<double>(light.unevenness), reflectance = n.reflectance;
     n.variance = static_cast<float>(reflectance * reflectance * uneven * uneven);
     n.error = static_cast<float>(reflectance * reflectance * error) + n.variance;
+    n.variance += light.texture * light.texture;  // which pictures have of the material itself
 }
 
 // Irradiance goes down to the leaves, radiosity comes up as the linear function that is closest to that of the parts,

@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "radiosity/covered.h"
 #include "radiosity/hierarchical.h"
+#include "radiosity/vertices.h"
 
 namespace trp {
 namespace {
@@ -73,11 +74,15 @@ HierarchicalSolver::Part HierarchicalSolver::part_of_clusters(const Elements& el
 }
 
 // What to do about a link: divide its receiver or its source, whichever its error is owed to and can be divided.
-HierarchicalSolver::Part HierarchicalSolver::part_by_error(const Elements& elements, const Link& link,
+HierarchicalSolver::Part HierarchicalSolver::part_by_error(const SolverJob& job, const Link& link,
                                                            const LinkError& error) const {
+    const Elements& elements = job.elements;
     if (has_cluster(link)) return part_of_clusters(elements, link);
-    const bool receivers = !elements[link.receiver].leaf() || may_divide(elements, link.receiver),
-               sources = !elements[link.source].leaf();
+    const auto may_be_divided = [&](NodeId id) { return !elements[id].leaf() || may_divide(elements, id); };
+    // Of a leaf that reflects alone, the parts would have its radiosity.
+    const bool receivers = may_be_divided(link.receiver),
+               sources = may_be_divided(link.source) &&
+                         (!elements[link.source].leaf() || job.solution.light[link.source].texture > 0);
     if (!receivers && !sources) return Part::none;
     return receivers && (!sources || error.over_receiver >= error.within_source + error.coherent + error.chance)
                ? Part::receiver
@@ -109,9 +114,14 @@ HierarchicalSolver::Marks HierarchicalSolver::mark(const SolverJob& job) const {
                 out.parts[l] = part_by_ratio(elements, link, ratio);
                 continue;
             }
+            if (leads_across_walls(link)) {
+                out.parts[l] = is_across(link.receiver) ? Part::receiver : Part::source;
+                shares[l] = std::numeric_limits<double>::infinity();
+                continue;
+            }
             const Node& to = node(link.receiver);
             const LinkError error = link_error(l);
-            out.parts[l] = part_by_error(elements, link, error);
+            out.parts[l] = part_by_error(job, link, error);
             if (out.parts[l] != Part::none)
                 shares[l] = (error.squares() + error.coherent * static_cast<double>(to.coherent)) *
                             static_cast<double>(to.reflectance * to.reflectance) * area_of(link.receiver);
@@ -150,6 +160,39 @@ void HierarchicalSolver::add_parts(const Elements& elements, const Link& link, P
     }
 }
 
+// Divides leaves until each has neighbours of half its size at least, so that what a small one has at its corners is
+// not spread over a large one (a restricted quad-tree: Baum, Mann, Smith and Winget 1991).
+void HierarchicalSolver::balance(Elements& elements) const {
+    for (bool any = true; any;) {
+        any = false;
+        const ElementVertices vertices(elements);
+        for (uint32_t i = 0, count = elements.size(); i < count; ++i)
+            if (elements[i].leaf() && vertices.has_small_neighbours(i)) elements.divide(i), any = true;
+    }
+}
+
+// What elements from number `first` on need, which have just been made, and new links. Returns false where it was
+// cancelled: then the elements are gone, and all is as before.
+bool HierarchicalSolver::add_elements(const SolverJob& job, uint32_t first, std::vector<Link>& fresh) {
+    Elements& elements = job.elements;
+    Solution& solution = job.solution;
+    solution.light.resize(elements.size());
+    find_covered(elements, job.lighting(), first);
+    light_elements(job.lighting(), first, std::span(solution.light).subspan(first));
+    evaluate(job, fresh);
+    mirrors_.add(job.lighting(), first, solution.light);
+    if (job.cancelled) {
+        elements.merge(first);
+        mirrors_.merge(first);
+        solution.light.resize(first);
+        return false;
+    }
+    solution.irradiance.resize(elements.size(), Vec3d(0, 0, 0));
+    solution.slopes.resize(elements.size(), {Vec3(0, 0, 0), Vec3(0, 0, 0)});
+    add_nodes(job);
+    return true;
+}
+
 // Returns whether there was anything to refine.
 bool HierarchicalSolver::refine(const SolverJob& job) {
     Elements& elements = job.elements;
@@ -175,21 +218,8 @@ bool HierarchicalSolver::refine(const SolverJob& job) {
         add_parts(elements, next, marks.parts[l], by_error ? kAtOnce : 1, fresh);
     }
     if (kept.size() == links_.size() && elements.size() == old_size) return false;
-    job.solution.light.resize(elements.size());
-    job.solution.irradiance.resize(elements.size(), Vec3d(0, 0, 0));
-    find_covered(elements, job.lighting(), old_size);
-    light_elements(job.lighting(), old_size, std::span(job.solution.light).subspan(old_size));
-    evaluate(job, fresh);
-    mirrors_.add(job.lighting(), old_size, job.solution.light);
-    if (job.cancelled) {  // as if it had not begun
-        elements.merge(old_size);
-        mirrors_.merge(old_size);
-        job.solution.light.resize(old_size);
-        job.solution.irradiance.resize(old_size);
-        return false;
-    }
-    job.solution.slopes.resize(elements.size(), {Vec3(0, 0, 0), Vec3(0, 0, 0)});
-    add_nodes(job);
+    balance(elements);
+    if (!add_elements(job, old_size, fresh)) return false;
     kept.insert(kept.end(), fresh.begin(), fresh.end());
     links_.swap(kept);
     return true;

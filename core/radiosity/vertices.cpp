@@ -142,6 +142,15 @@ ElementVertices::ElementVertices(const Elements& elements) {
     first_.back() = static_cast<uint32_t>(loop_.size());
 }
 
+bool ElementVertices::has_small_neighbours(uint32_t leaf) const {
+    uint32_t between = 0;
+    for (uint32_t k = first_[leaf]; k < first_[leaf + 1]; ++k) {
+        between = corners_[k] ? 0 : between + 1;
+        if (between > 1) return true;
+    }
+    return false;
+}
+
 std::vector<Vec3> ElementVertices::average(const Elements& elements, const std::vector<Vec3>& values,
                                            const std::vector<std::array<Vec3, 2>>& slopes) const {
     std::vector<Vec3> sums(vertices_.size(), Vec3(0, 0, 0));

@@ -37,6 +37,8 @@ class ElementVertices {
     // more vertices around it, in triangles about its middle.
     enum class Way : uint8_t { constant, linear, bilinear, triangle_sectors, quad_sectors };
     Way way(uint32_t leaf) const { return ways_[leaf]; }
+    // Whether the neighbours along a side have less than half of it each.
+    bool has_small_neighbours(uint32_t leaf) const;
     // What vertices have, and the leaf in its middle, at a place in a leaf with sectors: u and v from 0 to 1 along the
     // sides that meet in its first corner.
     Vec3 in_sectors(uint32_t leaf, float u, float v, const std::vector<Vec3>& at_vertices,
