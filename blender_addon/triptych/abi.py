@@ -333,6 +333,7 @@ class RadiosityInfo(c.Structure):
         ("unshot", f64 * 3),
         ("seconds", f64),
         ("projection_side", u32),
+        ("limited", i32),
     ]
 
 

@@ -102,7 +102,7 @@ def state(kept):
     info = kept.info
     iterations = str(info.iterations) + (f" of {kept.limit}" if kept.limit else "")
     rows = [
-        ("Iteration", iterations + (", solved" if info.solved else "")),
+        ("Iteration", iterations + radiosity_play.end_of(info)),
         ("Elements", f"{info.element_count:,}"),
         ("Links", f"{info.links:,}"),
         ("Residual", _RESIDUALS[kept.solver].format(info.residual)),

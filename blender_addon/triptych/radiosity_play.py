@@ -149,6 +149,13 @@ def is_done(kept, limited):
     return info is not None and (info.solved or (limited and 0 < kept.limit <= info.iterations))
 
 
+def end_of(info):
+    """What follows the number of iterations, of an abi.RadiosityInfo."""
+    if not info.solved:
+        return ""
+    return ", ended at its limit" if info.limited else ", solved"
+
+
 def steps_left(kept, steps, limited):
     """So many steps, or those that the setting radiosity.iterations leaves."""
     done = kept.info.iterations if kept.info is not None else 0
@@ -265,7 +272,7 @@ class _Advance:
 
 
 def _told(info):
-    return f"Radiosity: iteration {info.iterations}, {info.element_count} elements{', solved' if info.solved else ''}"
+    return f"Radiosity: iteration {info.iterations}, {info.element_count} elements{end_of(info)}"
 
 
 class TRIPTYCH_OT_radiosity_step(_Advance, bpy.types.Operator):

@@ -200,6 +200,7 @@ TrpStatus trp_radiosity_info(TrpRadiosity* radiosity, TrpRadiosityInfo* info) {
         const SolverStatistics& statistics = data.statistics();
         out.iterations = statistics.steps;
         out.solved = data.solved();
+        out.limited = static_cast<int32_t>(statistics.limit);
         out.links = statistics.links;
         out.rays = statistics.rays;
         out.residual = statistics.residual;

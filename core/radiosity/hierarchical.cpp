@@ -84,16 +84,19 @@ void HierarchicalSolver::evaluate(const SolverJob& job, std::vector<Link>& links
     });
 }
 
-bool HierarchicalSolver::is_within_tolerance(const SolverJob& job) const {
-    return job.statistics.residual <= tolerance_ &&
+bool HierarchicalSolver::is_done(const SolverJob& job) const {
+    return job.settings.radiosity.link_ratio == 0 && job.statistics.residual <= tolerance_ &&
            std::none_of(links_.begin(), links_.end(), [&](const Link& link) { return leads_across_walls(link); });
 }
 
 bool HierarchicalSolver::step(const SolverJob& job) {
-    const bool by_error = job.settings.radiosity.link_ratio == 0;
     if (!begun_) {
         if (!begin(job)) return true;
-    } else if ((by_error && is_within_tolerance(job)) || is_full() || !refine(job)) {
+    } else if (is_done(job) || is_full()) {
+        return false;
+    } else if (!refine(job)) {
+        const bool wanted = job.settings.radiosity.link_ratio == 0 && job.statistics.residual > tolerance_;
+        if (wanted && !job.cancelled) job.statistics.limit = SolverLimit::size;
         return job.cancelled;
     }
     solve(job);
@@ -101,9 +104,9 @@ bool HierarchicalSolver::step(const SolverJob& job) {
     job.statistics.links = links_.size();
     job.statistics.residual = std::sqrt(measure(job));
     job.statistics.wanted = tolerance_;
-    const bool done = by_error && is_within_tolerance(job);
-    job.statistics.limited = is_full() && !done;
-    return !done && !is_full();
+    if (is_done(job)) return false;
+    if (is_full()) job.statistics.limit = SolverLimit::links;
+    return !is_full();
 }
 
 void HierarchicalSolver::links(const Elements& elements, std::vector<ElementLink>& out) const {

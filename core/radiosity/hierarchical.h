@@ -93,7 +93,7 @@ class HierarchicalSolver : public Solver {
     void balance(Elements& elements) const;
     bool add_elements(const SolverJob& job, uint32_t first, std::vector<Link>& fresh);
     bool refine(const SolverJob& job);
-    bool is_within_tolerance(const SolverJob& job) const;
+    bool is_done(const SolverJob& job) const;  // as well as the tolerance asks for
     bool is_full() const { return links_.size() + element_nodes_.size() > most_; }
     float extent(const Elements& elements, NodeId id) const;
     struct Children {

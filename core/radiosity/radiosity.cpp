@@ -103,6 +103,17 @@ void Radiosity::warn_of_clamped() {
         warnings_.push_back({TRP_WARNING_MESH, TRP_NO_ID, "the scene has no surface to be lit"});
 }
 
+void Radiosity::warn_of_limit() {
+    if (statistics_.limit == SolverLimit::none) return;
+    const std::string limit =
+        statistics_.limit == SolverLimit::links
+            ? fmt::format("at its limit of elements and links, {} of them", elements_->size() + statistics_.links)
+            : "where no element may be divided further (radiosity.element_size)";
+    warnings_.push_back({TRP_WARNING_MESH, TRP_NO_ID,
+                         fmt::format("radiosity ended {}: its estimated error is {:.3g} W/m², and {:.3g} was asked for",
+                                     limit, statistics_.residual, statistics_.wanted)});
+}
+
 bool Radiosity::prepare(const RenderEvents& events, std::atomic<bool>& cancelled) {
     return elements_ || run(events, cancelled, [&] { make_elements(cancelled); });
 }
@@ -117,6 +128,7 @@ bool Radiosity::advance(uint32_t steps, const RenderEvents& events, std::atomic<
     return run(events, cancelled, [&] {
         shown_.reset();
         if (!elements_) make_elements(cancelled);
+        const bool was_solved = solved_;
         const uint32_t most = settings.radiosity.iterations;
         const uint32_t before = elements_ ? elements_->size() : 0;
         for (uint32_t k = 0; (steps == 0 || k < steps) && !solved_ && !cancelled; ++k) {
@@ -126,12 +138,7 @@ bool Radiosity::advance(uint32_t steps, const RenderEvents& events, std::atomic<
             solved_ = !solver_->step(job) && !cancelled;
         }
         if (elements_ && elements_->size() != before) vertices_.reset();  // they depend on nothing else
-        if (solved_ && statistics_.limited)
-            warnings_.push_back(
-                {TRP_WARNING_MESH, TRP_NO_ID,
-                 fmt::format("radiosity ended at its limit of elements and links, {} of them: its estimated error is "
-                             "{:.3g} W/m², and {:.3g} was asked for",
-                             elements_->size() + statistics_.links, statistics_.residual, statistics_.wanted)});
+        if (solved_ && !was_solved) warn_of_limit();
     });
 }
 

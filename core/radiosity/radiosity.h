@@ -50,6 +50,7 @@ class Radiosity {
     bool run(const RenderEvents& events, std::atomic<bool>& cancelled, const std::function<void()>& work);
     void make_elements(std::atomic<bool>& cancelled);
     void warn_of_clamped();
+    void warn_of_limit();
     std::shared_ptr<const ShownSolution> make_shown(const RadiositySettings& view);
     void show_form_factors(uint32_t number, ShownSolution& out);
     // What of the settings says which values are shown.

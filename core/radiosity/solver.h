@@ -33,13 +33,16 @@ struct Solution {
     Vec3d radiosity(uint32_t i) const { return emitted(i) + reflected(i, irradiance[i]); }
 };
 
+// Why a solver ended before what was asked for; TRP_LIMIT_….
+enum class SolverLimit : int32_t { none, links, size };
+
 struct SolverStatistics {
     std::atomic<uint64_t> rays{0};
     std::atomic<uint32_t> steps{0};  // read while the solver runs
     uint64_t links = 0;
-    double residual = 0;   // of the equation, or the estimated error, or the share that is unshot: as the solver says
-    double wanted = 0;     // the residual that was asked for, where the solver may have to end before
-    bool limited = false;  // it ended at a limit, before what was asked for
+    double residual = 0;  // of the equation, or the estimated error, or the share that is unshot: as the solver says
+    double wanted = 0;    // the residual that was asked for, where the solver may have to end before
+    SolverLimit limit = SolverLimit::none;
 };
 
 struct SolverJob {

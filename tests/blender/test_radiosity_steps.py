@@ -113,6 +113,13 @@ def test_the_state_that_the_panel_shows(scene):
     assert rows["Residual"].startswith(f"{info.residual:.3g} W/m²") and "Unshot" not in rows
 
 
+def test_what_ends_before_its_tolerance_is_not_called_solved(scene):
+    scene.triptych.radiosity_solver, scene.triptych.radiosity_tolerance = "hierarchical", 1e-6
+    bpy.ops.triptych.radiosity_play()
+    rows = dict(radiosity_panel.state(radiosity.kept()))
+    assert radiosity.kept().info.solved and rows["Iteration"].endswith(", ended at its limit")
+
+
 def test_a_walk_of_the_camera_and_views_stand(scene):
     kept = step()
     scene.camera.location.x = 1

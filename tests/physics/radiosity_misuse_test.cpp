@@ -188,6 +188,29 @@ TEST(RadiosityMisuse, ReflectanceOfOneIsHeldBelowItAndSaid) {
     }
 }
 
+TEST(RadiosityMisuse, WhatEndsBeforeItsToleranceSaysWhy) {
+    Random random{std::mt19937(9)};
+    Scene scene;
+    make_room(scene, random, true);
+    Solution::Settings settings = by("hierarchical");
+    settings.emplace_back("radiosity.element_size", "0.5");
+    settings.emplace_back("radiosity.tolerance", "1e-5");
+    Solution solution(scene, settings);
+    solution.solve().step(3);
+    EXPECT_TRUE(solution.info().solved);
+    EXPECT_GT(solution.info().residual, 1e-5);
+    EXPECT_EQ(solution.info().limited, TRP_LIMIT_SIZE);
+    ASSERT_EQ(trp_radiosity_warning_count(solution), 1u) << "once";
+    TrpWarning warning{};
+    warning.struct_size = sizeof warning;
+    check(trp_radiosity_warning(solution, 0, &warning));
+    EXPECT_NE(std::string(warning.text).find("no element may be divided further"), std::string::npos) << warning.text;
+    settings.back().second = "10";
+    Solution rough(scene, settings);
+    EXPECT_TRUE(rough.solve().info().solved);
+    EXPECT_EQ(rough.info().limited, TRP_LIMIT_NONE);
+}
+
 TEST(RadiosityMisuse, SaysHowMuchMemoryAMatrixNeeds) {
     Scene scene;
     const uint32_t grey = wall(scene, 0.5f, 1);

@@ -600,12 +600,17 @@ TRP_API TrpStatus trp_radiosity_solve(TrpRadiosity* radiosity, const TrpCallback
 /* Makes a running call return soon. Any thread, but not a signal handler. */
 TRP_API TrpStatus trp_radiosity_cancel(TrpRadiosity* radiosity);
 
+enum {
+    TRP_LIMIT_NONE = 0,
+    TRP_LIMIT_LINKS = 1, /* there are as many links and elements as it makes */
+    TRP_LIMIT_SIZE = 2   /* no element may be divided further */
+};
 typedef struct TrpRadiosityInfo {
     uint32_t struct_size;
     uint32_t element_count, vertex_count; /* vertices: where elements meet; 0 until the elements are made */
     uint32_t corner_count;                /* of all elements' polygons, as trp_radiosity_polygons gives them */
     uint32_t iterations;                  /* steps done */
-    int32_t solved;
+    int32_t solved;                       /* there is nothing left to be done; see limited */
     uint64_t links, rays;
     double residual;   /* matrix: the greatest change of the last sweep over the greatest radiosity; progressive: the
                           share of the power that is unshot; hierarchical: the estimated error, W/m² */
@@ -614,6 +619,7 @@ typedef struct TrpRadiosityInfo {
     double unshot[3];  /* of the progressive solver, W */
     double seconds;    /* wall time so far */
     uint32_t projection_side; /* pixels along a side of what trp_radiosity_projection gives */
+    int32_t limited;   /* TRP_LIMIT_…: why the hierarchical solver ended before the tolerance; 0: it did not */
 } TrpRadiosityInfo;
 TRP_API TrpStatus trp_radiosity_info(TrpRadiosity* radiosity, TrpRadiosityInfo* info);
 /* Warnings of its making, a reflectance of 1 and above or a scene without surfaces, and of its end: a limit that was met
