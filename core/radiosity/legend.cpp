@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 namespace trp {
 namespace {
@@ -30,10 +31,11 @@ constexpr Letter kLetters[] = {
 constexpr int kLetterWidth = 6, kLetterHeight = 7;  // dots, with a gap to the next
 
 constexpr int kSteps = 4;                      // of colours, with a number at the end of each
-constexpr int kBarWidth = 8, kBarHeight = 96;  // dots
-constexpr int kMargin = 5, kWords = 8;         // dots; letters that numbers may take
-constexpr int kWidth = 3 * kMargin + kBarWidth + kWords * kLetterWidth,
-              kHeight = kBarHeight + 2 * kMargin + 2 * kLetterHeight + kMargin;
+constexpr int kBarWidth = 8, kBarHeight = 48;  // dots
+constexpr int kMargin = 4;                     // dots
+constexpr int kHeight = kBarHeight + 2 * kMargin + 2 * kLetterHeight + kMargin;
+// Letters grow until it takes one part in so many of the picture's width or height; a dot is a pixel at least.
+constexpr uint32_t kPartOfWidth = 8, kPartOfHeight = 4;
 
 // Draws words so that their lower left corner lies at a dot, through put(dot across, dot up).
 template <class Put>
@@ -71,32 +73,40 @@ Vec3 false_color(float share) {
 }
 
 bool draw_legend(Film& film, float top, const char* unit, TrpTile& tile) {
+    std::vector<std::string> words;
+    for (int step = 0; step <= kSteps; ++step) words.push_back(number(top * static_cast<float>(step) / kSteps));
+    words.push_back(latin1(unit));
+    size_t longest = 0;
+    for (const std::string& word : words) longest = std::max(longest, word.size());
+    const int words_at = 2 * kMargin + kBarWidth, width = words_at + static_cast<int>(longest) * kLetterWidth + kMargin;
+
     const Window& window = film.window();
-    const auto dot = static_cast<int>(std::min(window.width / (3 * kWidth), window.height / (3 * kHeight / 2)));
-    if (dot < 1) return false;
-    const int left = static_cast<int>(window.width) - dot * (kWidth + kMargin), bottom = dot * kMargin;
+    const auto across = static_cast<uint32_t>(width), up = static_cast<uint32_t>(kHeight);
+    if (2 * window.width < 3 * across || 2 * window.height < 3 * up) return false;
+    const auto dot = static_cast<int>(
+        std::max(std::min(window.width / (kPartOfWidth * across), window.height / (kPartOfHeight * up)), 1u));
+    const int left = static_cast<int>(window.width) - dot * (width + kMargin), bottom = dot * kMargin;
     const int x0 = std::max(left, static_cast<int>(window.x)), y0 = std::max(bottom, static_cast<int>(window.y)),
-              x1 = std::min(left + dot * kWidth, static_cast<int>(window.x + window.w)),
+              x1 = std::min(left + dot * width, static_cast<int>(window.x + window.w)),
               y1 = std::min(bottom + dot * kHeight, static_cast<int>(window.y + window.h));
     if (x0 >= x1 || y0 >= y1) return false;
     tile.x = static_cast<uint32_t>(x0), tile.y = static_cast<uint32_t>(y0);
     tile.width = static_cast<uint32_t>(x1 - x0), tile.height = static_cast<uint32_t>(y1 - y0);
 
-    const auto fill = [&](int x, int y, int width, int height, const Vec3& color) {
-        for (int py = std::max(bottom + dot * y, y0); py < std::min(bottom + dot * (y + height), y1); ++py)
-            for (int px = std::max(left + dot * x, x0); px < std::min(left + dot * (x + width), x1); ++px)
+    const auto fill = [&](int x, int y, int w, int h, const Vec3& color) {
+        for (int py = std::max(bottom + dot * y, y0); py < std::min(bottom + dot * (y + h), y1); ++py)
+            for (int px = std::max(left + dot * x, x0); px < std::min(left + dot * (x + w), x1); ++px)
                 film.paint(static_cast<uint32_t>(px), static_cast<uint32_t>(py), color);
     };
     const auto ink = [&](int x, int y) { fill(x, y, 1, 1, {1, 1, 1}); };
-    fill(0, 0, kWidth, kHeight, {0.01f, 0.01f, 0.01f});
+    fill(0, 0, width, kHeight, {0.01f, 0.01f, 0.01f});
     const int bar_bottom = kMargin + kLetterHeight / 2;
     for (int y = 0; y < kBarHeight; ++y)
         fill(kMargin, bar_bottom + y, kBarWidth, 1,
              false_color((static_cast<float>(y) + 0.5f) / static_cast<float>(kBarHeight)));
-    const int words = 2 * kMargin + kBarWidth;
     for (int step = 0; step <= kSteps; ++step)
-        write(number(top * static_cast<float>(step) / kSteps), words, kMargin + step * kBarHeight / kSteps, ink);
-    write(latin1(unit), words, kHeight - kMargin - kLetterHeight, ink);
+        write(words[static_cast<size_t>(step)], words_at, kMargin + step * kBarHeight / kSteps, ink);
+    write(words.back(), words_at, kHeight - kMargin - kLetterHeight, ink);
     return true;
 }
 

@@ -238,22 +238,29 @@ TEST(RadiosityInspection, TheLegendShowsTheColoursAndLeavesTheRest) {
         check(trp_render_set_radiosity(render, solution));
         return render.run().read();
     };
-    const Image with = picture(480, 270, "on"), without = picture(480, 270, "off");
-    int differ = 0, red = 0, blue = 0, white = 0;
-    for (uint32_t y = 0; y < 270; ++y)
-        for (uint32_t x = 0; x < 480; ++x) {
-            const float *a = with.at(x, y), *b = without.at(x, y);
-            if (a[0] == b[0] && a[1] == b[1] && a[2] == b[2]) continue;
-            ++differ;
-            EXPECT_TRUE(x > 320 && y < 180) << x << ' ' << y;
-            red += a[0] == 1 && a[1] < 0.05f && a[2] == 0;
-            blue += a[0] == 0 && a[1] < 0.05f && a[2] == 1;
-            white += a[0] == 1 && a[1] == 1 && a[2] == 1;
-        }
-    EXPECT_GT(differ, 5000);
-    EXPECT_GT(red, 0);
-    EXPECT_GT(blue, 0);
-    EXPECT_GT(white, 100);  // words
+    // Of the picture's width and height, what is free of it.
+    const auto look = [&](uint32_t width, uint32_t height, double free_width, double free_height) {
+        const Image with = picture(width, height, "on"), without = picture(width, height, "off");
+        uint32_t left = width, top = 0;
+        int red = 0, blue = 0, white = 0;
+        for (uint32_t y = 0; y < height; ++y)
+            for (uint32_t x = 0; x < width; ++x) {
+                const float *a = with.at(x, y), *b = without.at(x, y);
+                if (a[0] == b[0] && a[1] == b[1] && a[2] == b[2]) continue;
+                left = std::min(left, x), top = std::max(top, y);
+                red += a[0] == 1 && a[1] < 0.1f && a[2] == 0;
+                blue += a[0] == 0 && a[1] < 0.1f && a[2] == 1;
+                white += a[0] == 1 && a[1] == 1 && a[2] == 1;
+            }
+        EXPECT_GT(left, free_width * width) << width;
+        EXPECT_LT(top, (1 - free_height) * height) << width;
+        EXPECT_GT(red, 0) << width;
+        EXPECT_GT(blue, 0) << width;
+        EXPECT_GT(white, 100) << width << ": words";
+    };
+    look(640, 480, 0.85, 0.75);
+    look(1920, 1080, 0.85, 0.75);
+    look(200, 113, 0.6, 0.25);
     // Where words could not be read there are none.
     EXPECT_EQ(picture(64, 48, "on").values, picture(64, 48, "off").values);
 }
