@@ -62,11 +62,12 @@ std::vector<uint32_t> chosen_rows(const std::string& text, uint32_t count) {
     return rows;
 }
 
-void write_rows(const Options& options, TrpRadiosity* radiosity, uint32_t count) {
+void write_rows(const Options& options, TrpRadiosity* radiosity, uint32_t count, InterruptGuard& guard) {
     const std::vector<uint32_t> rows = chosen_rows(options.rows_text, count);
     std::vector<double> values(rows.size() * count);
     for (size_t k = 0; k < rows.size(); ++k)
         check(trp_radiosity_form_factors(radiosity, rows[k], values.data() + k * count, count));
+    guard.hold();
     write_file(options.output,
                ends_in(options.output, ".npy") ? npy(values, rows.size(), count) : csv(values, std::max(count, 1u)));
 }
@@ -96,13 +97,15 @@ int run(Options options) {
     LoadedPicture picture = load_picture(options);
     const RenderHandle render = make_picture(options, picture);
     const RadiosityHandle radiosity = make_radiosity(options, picture);
-    SolveCallbacks callbacks(guard, options.quiet);
-    callbacks.check_call(trp_radiosity_prepare(radiosity.get(), callbacks.get()));
+    SolveCallbacks callbacks(options.quiet);
+    if (!callbacks.check_whole(trp_radiosity_prepare(radiosity.get(), callbacks.get())))
+        throw Interrupted("interrupted");
     print_radiosity_warnings(options, radiosity.get());
     const uint32_t count = info_of(radiosity.get()).element_count;
-    guard.begin_writing();
-    if (!options.output.empty()) write_rows(options, radiosity.get(), count);
+    if (!options.output.empty()) write_rows(options, radiosity.get(), count, guard);
+    guard.hold();
     if (!options.picture.empty()) write_picture(options, radiosity.get(), count);
+    if (guard.interrupted()) throw Interrupted("interrupted: all is written");
     return 0;
 }
 

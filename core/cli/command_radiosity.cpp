@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <memory>
 #include <numeric>
-#include <optional>
 
 #include "bake_glb.h"
 #include "commands.h"
@@ -72,21 +71,63 @@ void draw_links(const Options& options, const LoadedPicture& picture, TrpRender*
 
 // Draws the solution as it is into DIR/NAME.exr and .png.
 void draw(const Options& options, const LoadedPicture& picture, const RenderHandle& render,
-          const RadiosityHandle& radiosity, const std::string& name, InterruptGuard& guard) {
+          const RadiosityHandle& radiosity, const std::string& name) {
     if (options.has_pixel) {
         const uint32_t element = picked_element(options, picture, render.get(), radiosity.get());
         check(trp_render_set(render.get(), "radiosity.view_element", std::to_string(element).c_str()));
     }
     check(trp_render_set_radiosity(render.get(), radiosity.get()));
     check(trp_render_run(render.get(), nullptr));
-    guard.begin_writing();
     for (const char* extension : {".exr", ".png"})
         check(trp_render_write(render.get(), (options.output + "/" + name + extension).c_str()));
-    guard.end_writing();
-    if (guard.interrupted()) throw Error("interrupted");
 }
 
-int run(Options options) {
+std::string snapshot_name(uint32_t step) {
+    return fmt::format("iteration_{:04}", step);
+}
+
+// Advances to each snapshot and draws it, or solves as far as it goes. Returns what is said where it was interrupted,
+// whose last state is drawn in place of the snapshots that are left.
+std::string solve(const Options& options, const LoadedPicture& picture, const RenderHandle& render,
+                  const RadiosityHandle& radiosity) {
+    SolveCallbacks callbacks(options.quiet);
+    const auto steps = [&] { return info_of(radiosity.get()).iterations; };
+    bool whole = true;
+    uint32_t drawn = 0;
+    if (options.snapshots.empty()) whole = callbacks.check_whole(trp_radiosity_solve(radiosity.get(), callbacks.get()));
+    for (const uint32_t step : options.snapshots) {
+        if (step > steps())
+            whole = callbacks.check_whole(trp_radiosity_step(radiosity.get(), step - steps(), callbacks.get()));
+        if (!whole || InterruptGuard::interrupted()) break;
+        draw(options, picture, render, radiosity, snapshot_name(step));
+        drawn = step;
+    }
+    const std::string ending = InterruptGuard::interrupted() ? interrupted_after(info_of(radiosity.get())) : "";
+    if (options.output.empty()) return ending;
+    if (options.snapshots.empty())
+        draw(options, picture, render, radiosity, "radiosity");
+    else if (!ending.empty() && steps() > drawn)
+        draw(options, picture, render, radiosity, snapshot_name(steps()));
+    return ending.empty() ? "" : ending + ": the picture shows them";
+}
+
+void print_summary(const Options& options, const LoadedPicture& picture, const RenderHandle& render,
+                   const RadiosityHandle& radiosity) {
+    const TrpRadiosityInfo info = info_of(radiosity.get());
+    fmt::print("{} elements, {} links, {} steps, {} rays, {:.3g} s, residual {:.3g}{}\n", info.element_count,
+               info.links, info.iterations, info.rays, info.seconds, info.residual,
+               !info.solved   ? ""
+               : info.limited ? ", ended at its limit"
+                              : ", solved");
+    if (const auto sums = row_sums_of(radiosity.get()))
+        fmt::print("row sums {:.4g} to {:.4g}, mean {:.4g}\n", sums->least, sums->greatest, sums->mean);
+    if (options.has_pixel)
+        fmt::print("element {} at pixel {},{}\n", picked_element(options, picture, render.get(), radiosity.get()),
+                   options.pixel[0], options.pixel[1]);
+}
+
+// Throws a UsageError for what is wrong in the call, as far as the scene is not needed for it.
+void check_options(Options& options) {
     if (!options.snapshots_text.empty()) {
         if (options.output.empty()) throw UsageError("--snapshots: needs --output");
         options.snapshots = parse_snapshots(options.snapshots_text);
@@ -97,40 +138,29 @@ int run(Options options) {
     for (const std::string* path : {&options.stats, &options.links, &options.bake})
         if (!path->empty()) check_writable(*path);
     if (!options.output.empty()) {
+        const std::filesystem::path folder = std::filesystem::u8path(options.output);
         std::error_code error;
-        std::filesystem::create_directories(std::filesystem::u8path(options.output), error);
+        std::filesystem::create_directories(folder, error);
         if (error) throw Error(fmt::format("{}: the folder cannot be made: {}", options.output, error.message()));
     }
+}
+
+int run(Options options) {
+    check_options(options);
     InterruptGuard guard;
     LoadedPicture picture = load_picture(options);
     if (options.has_pixel) check_pixel(options, picture);
     const RenderHandle render = make_picture(options, picture);
     const RadiosityHandle radiosity = make_radiosity(options, picture);
-    SolveCallbacks callbacks(guard, options.quiet);
-    callbacks.check_call(trp_radiosity_prepare(radiosity.get(), callbacks.get()));
+    SolveCallbacks callbacks(options.quiet);
+    if (!callbacks.check_whole(trp_radiosity_prepare(radiosity.get(), callbacks.get())))
+        throw Interrupted("interrupted");
+    guard.hold();
     const uint32_t told = print_radiosity_warnings(options, radiosity.get());
     if (options.has_pixel) picked_element(options, picture, render.get(), radiosity.get());  // or fails early
-    for (const uint32_t step : options.snapshots) {
-        const uint32_t done = info_of(radiosity.get()).iterations;
-        if (step > done) callbacks.check_call(trp_radiosity_step(radiosity.get(), step - done, callbacks.get()));
-        draw(options, picture, render, radiosity, fmt::format("iteration_{:04}", step), guard);
-    }
-    if (options.snapshots.empty()) {
-        callbacks.check_call(trp_radiosity_solve(radiosity.get(), callbacks.get()));
-        if (!options.output.empty()) draw(options, picture, render, radiosity, "radiosity", guard);
-    }
+    const std::string ending = solve(options, picture, render, radiosity);
     print_radiosity_warnings(options, radiosity.get(), told);
-    const TrpRadiosityInfo info = info_of(radiosity.get());
-    const std::optional<RowSums> row_sums = row_sums_of(radiosity.get());
-    if (!options.quiet) {
-        fmt::print("{} elements, {} links, {} steps, {} rays, {:.3g} s, residual {:.3g}{}\n", info.element_count,
-                   info.links, info.iterations, info.rays, info.seconds, info.residual, info.solved ? ", solved" : "");
-        if (row_sums)
-            fmt::print("row sums {:.4g} to {:.4g}, mean {:.4g}\n", row_sums->least, row_sums->greatest, row_sums->mean);
-        if (options.has_pixel)
-            fmt::print("element {} at pixel {},{}\n", picked_element(options, picture, render.get(), radiosity.get()),
-                       options.pixel[0], options.pixel[1]);
-    }
+    if (!options.quiet) print_summary(options, picture, render, radiosity);
     if (!options.stats.empty()) {
         CommandCosts costs;
         costs.method = options.method;
@@ -142,20 +172,14 @@ int run(Options options) {
             costs.render.struct_size = sizeof costs.render;
             check(trp_render_statistics(render.get(), &costs.render));
         }
-        costs.render.solve_seconds = info.seconds;
-        costs.render.gather_rays = info.rays;
-        costs.render.elements = info.element_count;
-        costs.render.links = info.links;
-        costs.render.iterations = info.iterations;
-        costs.render.residual = info.residual;
-        costs.radiosity = &info;
-        costs.row_sums = row_sums ? &*row_sums : nullptr;
+        put_solution(radiosity.get(), costs);
         costs.width = picture.width;
         costs.height = picture.height;
         write_file(options.stats, statistics_json(costs));
     }
     if (!options.bake.empty()) write_baked_glb(options.scene, radiosity.get(), options.bake);
     if (!options.links.empty()) draw_links(options, picture, render.get(), radiosity.get());
+    if (guard.interrupted()) throw Interrupted(ending.empty() ? "interrupted: all is written" : ending);
     return 0;
 }
 
@@ -166,11 +190,12 @@ Command add_radiosity_command(CLI::App& program) {
     const auto options = std::make_shared<Options>();
     options->method = "radiosity";
     add_picture_options(*app, *options);
-    app->add_option("--snapshots", options->snapshots_text,
-                    "1,2,24,…: draw the solution after these steps, into DIR/iteration_0001.exr and .png");
     app->add_option("--output", options->output,
                     "DIR: the folder of the pictures; without snapshots, radiosity.exr and "
-                    ".png of the whole solution");
+                    ".png of the whole solution, or on Ctrl-C of what there is");
+    app->add_option("--snapshots", options->snapshots_text,
+                    "1,2,24,…: draw the solution after these steps, whatever radiosity.iterations says, into "
+                    "DIR/iteration_0001.exr and .png; on Ctrl-C after the last step");
     app->add_option("--stats", options->stats, "Write what it cost into this file, as JSON");
     app->add_option("--bake", options->bake,
                     "FILE.glb: the scene as a mesh of its elements with their radiosity as vertex colours");

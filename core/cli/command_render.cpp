@@ -6,6 +6,7 @@
 
 #include "commands.h"
 #include "interrupt.h"
+#include "radiosity_job.h"
 #include "render_job.h"
 #include "report.h"
 #include "statistics.h"
@@ -16,14 +17,15 @@ namespace {
 
 struct CallbackState {
     ProgressLine line;
-    const InterruptGuard& guard;
-    bool quiet;
+    bool quiet, stops;
+    uint32_t passes = 0, pass_count = 0;  // over the film: done, and all
 };
 
 int32_t on_progress(void* user, const TrpProgress* progress) {
     CallbackState& state = *static_cast<CallbackState*>(user);
     state.line.show(*progress);
-    return state.guard.interrupted() ? 0 : 1;
+    state.passes = progress->pass, state.pass_count = progress->pass_count;
+    return state.stops && InterruptGuard::interrupted() ? 0 : 1;
 }
 
 void on_log(void* user, const char* text) {
@@ -33,21 +35,32 @@ void on_log(void* user, const char* text) {
     fmt::print(stderr, "triptych: {}\n", one_line(text));
 }
 
-void run_render(TrpRender* render, InterruptGuard& guard, bool quiet) {
-    CallbackState state{ProgressLine(!quiet && error_is_terminal()), guard, quiet};
+// Solves what the render shows. Returns how far it came where it was interrupted, else nothing.
+std::string solve(const RenderJob& job, TrpRender* render, TrpRadiosity* radiosity) {
+    SolveCallbacks callbacks(job.quiet);
+    const bool whole = callbacks.check_whole(trp_radiosity_solve(radiosity, callbacks.get()));
+    const std::string ending = whole ? "" : interrupted_after(info_of(radiosity)) + ": the picture shows them";
+    print_radiosity_warnings(job, radiosity);
+    check(trp_render_set_radiosity(render, radiosity));
+    return ending;
+}
+
+// Draws the picture. `stops`: on an interrupt. Returns how far it came where it was stopped, else nothing.
+std::string run_render(TrpRender* render, bool quiet, bool stops) {
+    CallbackState state{ProgressLine(!quiet && error_is_terminal()), quiet, stops};
     TrpCallbacks callbacks;
     check(trp_callbacks_init(&callbacks, sizeof callbacks));
     callbacks.user = &state;
     callbacks.progress = on_progress;
     callbacks.log = on_log;
-    guard.set_render(render);
     const TrpStatus status = trp_render_run(render, &callbacks);
-    // Before the render is let go, so that an interrupt finds one or the other.
-    guard.begin_writing();
-    guard.set_render(nullptr);
     state.line.clear();
-    if (status == TRP_CANCELLED || guard.interrupted()) throw Error("interrupted");
-    check(status);
+    if (status != TRP_CANCELLED) {
+        check(status);
+        return "";
+    }
+    if (state.passes == 0) throw Interrupted("interrupted");
+    return fmt::format("interrupted after {} of {} passes: the picture shows them", state.passes, state.pass_count);
 }
 
 CommandCosts costs_of(const RenderJob& job, const LoadedScene& loaded, TrpRender* render) {
@@ -71,7 +84,14 @@ int run(RenderJob job) {
     const RenderHandle render = make_picture(job, picture);
     if (job.tile.given()) set_tile(render.get(), job, picture.width, picture.height);
     for (const std::string& pass : job.passes) check(trp_render_add_pass(render.get(), pass.c_str()));
-    run_render(render.get(), guard, job.quiet);
+    guard.hold();
+    RadiosityHandle radiosity;
+    std::string ending;
+    if (job.method == "radiosity") {
+        radiosity = make_radiosity(job, picture);
+        ending = solve(job, render.get(), radiosity.get());
+    }
+    ending += run_render(render.get(), job.quiet, !radiosity);
 
     const auto start = std::chrono::steady_clock::now();
     check(trp_render_write(render.get(), job.output.c_str()));  // its message names the file
@@ -81,8 +101,10 @@ int run(RenderJob job) {
         costs.write_seconds = write_seconds;
         costs.width = picture.width;
         costs.height = picture.height;
+        if (radiosity) put_solution(radiosity.get(), costs);
         write_file(job.stats, statistics_json(costs));
     }
+    if (guard.interrupted()) throw Interrupted(ending.empty() ? "interrupted: the picture is whole" : ending);
     return 0;
 }
 

@@ -1,5 +1,5 @@
-// Ctrl-C and a request to end. A signal handler may do next to nothing, so that it sets a flag, and a thread looks at
-// it. SPDX-License-Identifier: Apache-2.0
+// Ctrl-C and a request to end. A signal handler may do next to nothing, so that it leaves the signal's number, and a
+// thread looks at it. SPDX-License-Identifier: Apache-2.0
 #include "interrupt.h"
 
 #include <atomic>
@@ -12,13 +12,14 @@ namespace triptych::cli {
 namespace {
 
 // Lock-free, so that a handler may write it.
-std::atomic<bool> signal_seen{false};
-static_assert(std::atomic<bool>::is_always_lock_free);
+std::atomic<int> signal_seen{0};
+static_assert(std::atomic<int>::is_always_lock_free);
 
 void remember(int number) {
-    signal_seen = true;
+    signal_seen = number;
     // A second one ends the program in the system's way.
-    std::signal(number, SIG_DFL);
+    std::signal(SIGINT, SIG_DFL);
+    std::signal(SIGTERM, SIG_DFL);
 }
 
 }  // namespace
@@ -40,37 +41,26 @@ InterruptGuard::~InterruptGuard() {
     std::signal(SIGTERM, SIG_DFL);
 }
 
-void InterruptGuard::set_render(TrpRender* render) {
+void InterruptGuard::hold() {
     const std::lock_guard lock(mutex_);
-    render_ = render;
+    held_ = true;
 }
 
-void InterruptGuard::begin_writing() {
-    const std::lock_guard lock(mutex_);
-    writing_ = true;
+bool InterruptGuard::interrupted() {
+    return signal_seen != 0;
 }
 
-void InterruptGuard::end_writing() {
-    const std::lock_guard lock(mutex_);
-    writing_ = false;
-}
-
-bool InterruptGuard::interrupted() const {
-    return signal_seen;
+int InterruptGuard::exit_code() {
+    return 128 + signal_seen;
 }
 
 void InterruptGuard::watch() {
     std::unique_lock lock(mutex_);
     while (!done_) {
         wake_.wait_for(lock, std::chrono::milliseconds(10));
-        if (!signal_seen || done_) continue;
-        if (render_ != nullptr) {
-            // Again and again: a cancel before the render runs has no effect.
-            trp_render_cancel(render_);
-        } else if (!writing_) {
-            std::fputs("triptych: error: interrupted\n", stderr);
-            std::_Exit(1);
-        }
+        if (!interrupted() || held_ || done_) continue;
+        std::fputs("triptych: error: interrupted\n", stderr);
+        std::_Exit(exit_code());
     }
 }
 

@@ -1,4 +1,4 @@
-// Ctrl-C and a request to end: a running render is cancelled, and nothing is left half-written.
+// Ctrl-C and a request to end: what was found by then is left, and nothing half-written.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -10,8 +10,14 @@
 
 namespace triptych::cli {
 
-// While one lives, SIGINT and SIGTERM end the program with exit code 1 and a line: at once, or, while a render runs, by
-// cancelling it; while a file is written, after that.
+// The command was interrupted, and has left what it had: a line, and the exit code that shells have for the signal.
+class Interrupted : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
+
+// While one lives, SIGINT and SIGTERM end the program with a line and exit code 130 or 143: at once, or, while it is
+// held, where the caller sees that it is `interrupted()`, and throws. A second one ends it at once in any case.
 class InterruptGuard {
   public:
     InterruptGuard();
@@ -19,19 +25,16 @@ class InterruptGuard {
     InterruptGuard(const InterruptGuard&) = delete;
     InterruptGuard& operator=(const InterruptGuard&) = delete;
 
-    // The render that an interrupt cancels; null: none.
-    void set_render(TrpRender* render);
-    // Between these, an interrupt waits: the caller asks `interrupted()` where it can stop.
-    void begin_writing();
-    void end_writing();
-    bool interrupted() const;
+    // From here on an interrupt waits for the caller.
+    void hold();
+    static bool interrupted();
+    static int exit_code();
 
   private:
     void watch();
 
     std::mutex mutex_;
-    TrpRender* render_ = nullptr;
-    bool writing_ = false;
+    bool held_ = false;
     bool done_ = false;
     std::condition_variable wake_;
     std::thread watcher_;

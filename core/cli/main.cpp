@@ -1,5 +1,5 @@
 // The command `triptych`: parses the command line, runs one command, and turns what goes wrong into one line and an
-// exit code: 0 done, 1 the work failed, 2 wrong usage. SPDX-License-Identifier: Apache-2.0
+// exit code: 0 done, 1 the work failed, 2 wrong usage, 130 interrupted. SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -7,6 +7,7 @@
 
 #include "commands.h"
 #include "error.h"
+#include "interrupt.h"
 
 namespace {
 
@@ -59,6 +60,8 @@ int main(int argc, char** argv) {
         return run(argc, argv);
     } catch (const UsageError& error) {
         return report(error.what(), wrong_usage);
+    } catch (const Interrupted& error) {
+        return report(error.what(), InterruptGuard::exit_code());
     } catch (const std::bad_alloc&) {
         return report("there is not enough memory", failed);
     } catch (const std::exception& error) {

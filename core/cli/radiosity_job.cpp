@@ -1,6 +1,8 @@
 // What the commands about radiosity have in common. SPDX-License-Identifier: Apache-2.0
 #include "radiosity_job.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <numeric>
 
@@ -17,21 +19,38 @@ RadiosityHandle make_radiosity(const PictureJob& job, const LoadedPicture& pictu
     return radiosity;
 }
 
-SolveCallbacks::SolveCallbacks(const InterruptGuard& guard, bool quiet)
-    : line_(!quiet && error_is_terminal()), guard_(guard) {
+SolveCallbacks::SolveCallbacks(bool quiet) : line_(!quiet && error_is_terminal()) {
     check(trp_callbacks_init(&callbacks_, sizeof callbacks_));
     callbacks_.user = this;
     callbacks_.progress = [](void* user, const TrpProgress* progress) -> int32_t {
-        SolveCallbacks& self = *static_cast<SolveCallbacks*>(user);
-        self.line_.show(*progress);
-        return self.guard_.interrupted() ? 0 : 1;
+        static_cast<SolveCallbacks*>(user)->line_.show(*progress);
+        return InterruptGuard::interrupted() ? 0 : 1;
     };
 }
 
-void SolveCallbacks::check_call(TrpStatus status) {
+bool SolveCallbacks::check_whole(TrpStatus status) {
     line_.clear();
-    if (status == TRP_CANCELLED) throw Error("interrupted");
+    if (status == TRP_CANCELLED) return false;
     check(status);
+    return true;
+}
+
+std::string interrupted_after(const TrpRadiosityInfo& info) {
+    if (info.iterations == 0) throw Interrupted("interrupted");
+    return fmt::format("interrupted after {} step{}, residual {:.3g}", info.iterations, info.iterations == 1 ? "" : "s",
+                       info.residual);
+}
+
+void put_solution(TrpRadiosity* radiosity, CommandCosts& costs) {
+    const TrpRadiosityInfo info = info_of(radiosity);
+    costs.render.solve_seconds = info.seconds;
+    costs.render.gather_rays = info.rays;
+    costs.render.elements = info.element_count;
+    costs.render.links = info.links;
+    costs.render.iterations = info.iterations;
+    costs.render.residual = info.residual;
+    costs.radiosity = info;
+    costs.row_sums = row_sums_of(radiosity);
 }
 
 TrpRadiosityInfo info_of(TrpRadiosity* radiosity) {

@@ -16,16 +16,22 @@ RadiosityHandle make_radiosity(const PictureJob& job, const LoadedPicture& pictu
 // Callbacks that show progress on a terminal, and stop on an interrupt.
 class SolveCallbacks {
   public:
-    SolveCallbacks(const InterruptGuard& guard, bool quiet);
+    explicit SolveCallbacks(bool quiet);
     const TrpCallbacks* get() const { return &callbacks_; }
-    // Throws an Error where the call failed or was interrupted; takes the progress line off the terminal.
-    void check_call(TrpStatus status);
+    // Takes the progress line off the terminal. Returns whether the call was not interrupted; throws an Error where it
+    // failed.
+    bool check_whole(TrpStatus status);
 
   private:
     ProgressLine line_;
-    const InterruptGuard& guard_;
     TrpCallbacks callbacks_{};
 };
+
+// What is said where an interrupt ended the solving. Throws Interrupted where nothing was found by then.
+std::string interrupted_after(const TrpRadiosityInfo& info);
+
+// Puts what a solution cost into a command's costs.
+void put_solution(TrpRadiosity* radiosity, CommandCosts& costs);
 
 TrpRadiosityInfo info_of(TrpRadiosity* radiosity);
 

@@ -37,10 +37,15 @@ std::string statistics_json(const CommandCosts& costs) {
         {"scene_bytes",
          {{"mesh", costs.scene.mesh_bytes}, {"held", costs.scene.held_bytes}, {"bvh", costs.scene.bvh_bytes}}},
     };
-    if (const TrpRadiosityInfo* info = costs.radiosity) {
-        json["radiosity"] = {{"solved", info->solved != 0}, {"vertices", info->vertex_count}, {"area", info->area},
-                             {"power", info->power},        {"unshot", info->unshot},         {"row_sums", nullptr}};
-        if (const RowSums* sums = costs.row_sums)
+    if (const auto& info = costs.radiosity) {
+        json["radiosity"] = {{"solved", info->solved && !info->limited},
+                             {"limited", info->limited != TRP_LIMIT_NONE},
+                             {"vertices", info->vertex_count},
+                             {"area", info->area},
+                             {"power", info->power},
+                             {"unshot", info->unshot},
+                             {"row_sums", nullptr}};
+        if (const auto& sums = costs.row_sums)
             json["radiosity"]["row_sums"] = {
                 {"least", sums->least}, {"mean", sums->mean}, {"greatest", sums->greatest}};
     }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "error.h"
@@ -19,8 +20,8 @@ struct CommandCosts {
     TrpSceneInfo scene{};
     TrpStatistics render{};
     uint32_t width = 0, height = 0;
-    const TrpRadiosityInfo* radiosity = nullptr;  // of a command that solves one
-    const RowSums* row_sums = nullptr;            // where its solver knows them
+    std::optional<TrpRadiosityInfo> radiosity;  // of a command that solves one
+    std::optional<RowSums> row_sums;            // where its solver knows them
 };
 
 std::string statistics_json(const CommandCosts& costs);

@@ -1,96 +1,12 @@
 // The command as others call it: exit codes, the error line, and files that are left alone when something fails.
 // SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/wait.h>
-#include <unistd.h>
 #include <fstream>
 
-#include <algorithm>
-#include <chrono>
-#include <thread>
-
-#include "gltf_builder.h"
+#include "command.h"
 #include "samples.h"
 
 namespace triptych::test {
 namespace {
-
-struct Outcome {
-    int code = -1;
-    std::string out, error;
-};
-
-std::string text_of(const std::filesystem::path& path) {
-    const std::vector<unsigned char> bytes = read_bytes(path);
-    return {bytes.begin(), bytes.end()};
-}
-
-// Starts the command with its two streams in files; gives its process.
-pid_t start(const std::vector<std::string>& arguments, const std::filesystem::path& folder) {
-    const pid_t process = fork();
-    if (process != 0) return process;
-    if (freopen((folder / "out").c_str(), "w", stdout) == nullptr) _exit(99);
-    if (freopen((folder / "error").c_str(), "w", stderr) == nullptr) _exit(99);
-    std::vector<char*> list = {const_cast<char*>(TRIPTYCH_COMMAND)};
-    for (const std::string& argument : arguments) list.push_back(const_cast<char*>(argument.c_str()));
-    list.push_back(nullptr);
-    execv(TRIPTYCH_COMMAND, list.data());
-    _exit(98);
-}
-
-Outcome finish(pid_t process, const std::filesystem::path& folder) {
-    int status = 0;
-    waitpid(process, &status, 0);
-    Outcome outcome;
-    outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
-    outcome.out = text_of(folder / "out");
-    outcome.error = text_of(folder / "error");
-    return outcome;
-}
-
-class Command : public testing::Test {
-  protected:
-    void SetUp() override {
-        folder = test_folder(std::string("Command.") + testing::UnitTest::GetInstance()->current_test_info()->name());
-        const Square square;
-        GltfBuilder builder;
-        builder.add_mesh_node({{"attributes", {{"POSITION", builder.accessor(square.positions, float_type, "VEC3")}}},
-                               {"indices", builder.accessor(square.indices, ushort_type, "SCALAR")}});
-        scene = builder.write(folder, "scene.glb").string();
-        picture = (folder / "picture.exr").string();
-    }
-
-    Outcome run(const std::vector<std::string>& arguments) { return finish(start(arguments, folder), folder); }
-
-    std::vector<std::string> render(std::vector<std::string> more = {}) {
-        std::vector<std::string> arguments = {"render", scene,     "--method", "ray_casting", "--output",
-                                              picture,  "--width", "64",       "--height",    "32"};
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        return arguments;
-    }
-
-    // One line, with that part in it.
-    static void expect_error(const Outcome& outcome, int code, const std::string& part) {
-        EXPECT_EQ(outcome.code, code) << outcome.error;
-        EXPECT_EQ(outcome.error.rfind("triptych: error: ", 0), 0u) << outcome.error;
-        EXPECT_EQ(std::count(outcome.error.begin(), outcome.error.end(), '\n'), 1) << outcome.error;
-        EXPECT_NE(outcome.error.find(part), std::string::npos) << outcome.error;
-    }
-
-    std::vector<std::string> files() const {
-        std::vector<std::string> names;
-        for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-            const std::string name = entry.path().filename().string();
-            if (name != "out" && name != "error" && name != "scene.glb") names.push_back(name);
-        }
-        std::sort(names.begin(), names.end());
-        return names;
-    }
-
-    std::filesystem::path folder;
-    std::string scene, picture;
-};
 
 TEST_F(Command, HelpAndVersion) {
     const Outcome help = run({"--help"});
@@ -262,78 +178,6 @@ TEST_F(Command, RayTreeShowsThePixel) {
                  "no folder");
 }
 
-TEST_F(Command, RadiosityLeavesItsSnapshots) {
-    const std::filesystem::path pictures = folder / "pictures";
-    const std::vector<std::string> solve = {
-        "radiosity", scene, "--set", "radiosity.solver=progressive", "--quiet", "--width", "32", "--height", "24"};
-    const auto with = [&](std::vector<std::string> more) {
-        more.insert(more.begin(), solve.begin(), solve.end());
-        return run(more);
-    };
-    EXPECT_EQ(with({"--snapshots", "1,2", "--output", pictures.string()}).code, 0);
-    for (const char* name : {"iteration_0001.exr", "iteration_0001.png", "iteration_0002.exr", "iteration_0002.png"})
-        EXPECT_TRUE(std::filesystem::exists(pictures / name)) << name;
-    expect_error(with({"--snapshots", "1,,2", "--output", pictures.string()}), 2, "--snapshots: '1,,2'");
-    expect_error(with({"--snapshots", "0", "--output", pictures.string()}), 2, "--snapshots: the first step is 1");
-    expect_error(with({"--snapshots", "1"}), 2, "--snapshots: needs --output");
-}
-
-TEST_F(Command, RadiosityIsLookedInto) {
-    const std::string links = (folder / "links.svg").string(), stats = (folder / "stats.json").string();
-    const auto solve = [&](std::vector<std::string> more) {
-        more.insert(more.begin(), {"radiosity", scene, "--width", "32", "--height", "24"});
-        return run(more);
-    };
-    const Outcome outcome = solve({"--links", links, "--stats", stats, "--pixel", "16,12", "--set",
-                                   "radiosity.view=form_factors", "--output", (folder / "pictures").string()});
-    ASSERT_EQ(outcome.code, 0) << outcome.error;
-    EXPECT_NE(outcome.out.find(" at pixel 16,12\n"), std::string::npos) << outcome.out;
-    EXPECT_NE(outcome.out.find("row sums 0 to 0"), std::string::npos) << "two triangles of one plane: " << outcome.out;
-    EXPECT_NE(text_of(links).find("href=\"data:image/png;base64,iVBORw0KGgo"), std::string::npos);
-    EXPECT_FALSE(std::filesystem::exists(links + ".png"));
-    const json costs = json::parse(text_of(stats));
-    for (const char* key : {"elements", "links", "iterations", "residual"}) EXPECT_TRUE(costs.contains(key)) << key;
-    EXPECT_TRUE(costs["rays"].contains("gather"));
-    EXPECT_EQ(costs["radiosity"]["row_sums"]["greatest"], 0);
-    EXPECT_EQ(costs["radiosity"]["solved"], true);
-    expect_error(solve({"--quiet", "--pixel", "32,3"}), 2, "outside the picture");
-    expect_error(solve({"--quiet", "--links", (folder / "no/links.svg").string()}), 1, "no folder");
-    expect_error(solve({"--quiet", "--level", "-2"}), 2, "--level");
-    expect_error(solve({"--quiet", "--bake", "baked.gltf"}), 2, "--bake: 'baked.gltf' does not end in .glb");
-    ASSERT_EQ(solve({"--quiet", "--stats", stats, "--set", "radiosity.solver=progressive"}).code, 0);
-    EXPECT_TRUE(json::parse(text_of(stats))["radiosity"]["row_sums"].is_null());
-}
-
-TEST_F(Command, FormFactorsAreAnArray) {
-    const std::string array = (folder / "rows.npy").string(), text = (folder / "rows.csv").string();
-    EXPECT_EQ(run({"form-factors", scene, "--output", array, "--quiet"}).code, 0);
-    EXPECT_EQ(text_of(array).substr(0, 6), "\x93NUMPY");
-    EXPECT_NE(text_of(array).find("'shape': (2, 2)"), std::string::npos);
-    const std::string half = "radiosity.element_size=0.6";
-    EXPECT_EQ(run({"form-factors", scene, "--output", array, "--quiet", "--set", half}).code, 0);
-    EXPECT_NE(text_of(array).find("'shape': (18, 18)"), std::string::npos);  // a setting leaves the solver as it was
-    EXPECT_EQ(run({"form-factors", scene, "--output", text, "--rows", "1", "--quiet"}).code, 0);
-    EXPECT_EQ(text_of(text), "0,0\n");  // two triangles of one plane
-    expect_error(run({"form-factors", scene, "--output", text, "--rows", "2", "--quiet"}), 2,
-                 "--rows: there is no element 2; there are 2");
-    expect_error(run({"form-factors", scene, "--output", "rows.txt"}), 2, "--output: 'rows.txt'");
-}
-
-TEST_F(Command, FormFactorsAreDrawn) {
-    const auto draw = [&](const std::string& name, std::vector<std::string> more = {}) {
-        more.insert(more.begin(), {"form-factors", scene, "--quiet", "--set", "radiosity.hemicube_resolution=32",
-                                   "--picture", (folder / name).string()});
-        return run(more);
-    };
-    for (const char* name : {"circle.png", "circle.exr", "circle.svg"}) EXPECT_EQ(draw(name).code, 0) << name;
-    EXPECT_EQ(draw("cross.png", {"--set", "radiosity.form_factors=hemicube", "--element", "1"}).code, 0);
-    EXPECT_EQ(text_of(folder / "cross.png").substr(1, 3), "PNG");
-    EXPECT_NE(text_of(folder / "circle.svg").find("What element 0 sees"), std::string::npos);
-    expect_error(draw("circle.jpg"), 2, "circle.jpg' does not end in .png, .exr or .svg");
-    expect_error(draw("circle.png", {"--element", "2"}), 2, "--element: there is no element 2; there are 2");
-    expect_error(run({"form-factors", scene}), 2, "--output or --picture");
-}
-
 TEST_F(Command, Tables) {
     for (const char* table : {"methods", "settings", "passes"}) {
         const Outcome outcome = run({table, "--json"});
@@ -404,13 +248,20 @@ TEST_F(Command, FilmAndSettingsOfTheFile) {
                  scene + ": extras.triptych.settings.sampels: ");
 }
 
-TEST_F(Command, InterruptedRenderLeavesNothing) {
+TEST_F(Command, InterruptedRenderLeavesItsPasses) {
+    const std::string stats = (folder / "stats.json").string();
+    std::vector<std::string> arguments = render({"--samples", "64000", "--quiet", "--stats", stats});
+    arguments[7] = arguments[9] = "128";
+    expect_error(interrupt(arguments, 2000), 130, " of 1000 passes: the picture shows them");
+    EXPECT_EQ(text_of(picture).substr(0, 4), "\x76\x2f\x31\x01");
+    EXPECT_EQ(files(), (std::vector<std::string>{"picture.exr", "stats.json"}));
+}
+
+TEST_F(Command, InterruptedBeforeAPassIsDoneLeavesNothing) {
     write_bytes(picture, {'o', 'l', 'd'});
-    const pid_t process = start(render({"--samples", "60000", "--quiet"}), folder);
-    std::this_thread::sleep_for(std::chrono::milliseconds(700));
-    kill(process, SIGINT);
-    const Outcome outcome = finish(process, folder);
-    expect_error(outcome, 1, "interrupted");
+    std::vector<std::string> arguments = render({"--samples", "64", "--quiet"});
+    arguments[7] = arguments[9] = "4096";
+    expect_error(interrupt(arguments, 700), 130, "interrupted");
     EXPECT_EQ(text_of(picture), "old");
     EXPECT_EQ(files(), std::vector<std::string>{"picture.exr"});
 }
