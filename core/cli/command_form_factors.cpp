@@ -115,15 +115,18 @@ Command add_form_factors_command(CLI::App& program) {
     CLI::App* app = program.add_subcommand("form-factors", "Write or draw the form factors between a scene's elements");
     const auto options = std::make_shared<Options>();
     options->method = "radiosity";
-    add_picture_options(*app, *options);
-    app->add_option("--output", options->output, ".npy, doubles, or .csv: a row for each element");
-    app->add_option("--rows", options->rows_text, "0,7,12,…: these rows alone");
-    app->add_option(
+    add_scene_options(*app, *options);
+    CLI::Option* output =
+        app->add_option("--output", options->output, ".npy, doubles, or .csv: a row for each element");
+    app->add_option("--rows", options->rows_text, "0,7,12,…: these rows alone")->needs(output);
+    CLI::Option* picture = app->add_option(
         "--picture", options->picture,
         ".png, .exr: what an element sees, on the unfolded faces of a hemicube where "
         "radiosity.form_factors is hemicube, else projected to the hemisphere and its base circle; .svg: the "
         "elements themselves, projected so");
-    app->add_option("--element", options->element, "The number of the row that is drawn")->capture_default_str();
+    app->add_option("--element", options->element, "The number of the row that is drawn")
+        ->capture_default_str()
+        ->needs(picture);
     return {app, [options] { return run(*options); }};
 }
 

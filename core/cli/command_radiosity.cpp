@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 #include <numeric>
+#include <set>
 
 #include "bake_glb.h"
 #include "commands.h"
@@ -46,6 +47,16 @@ uint32_t picked_element(const Options& options, const LoadedPicture& picture, co
     return element;
 }
 
+// Throws an Error where none of them is of the level that was asked for.
+void keep_level(std::vector<TrpRadiosityLink>& links, int32_t level) {
+    std::set<int32_t> levels;
+    for (const TrpRadiosityLink& link : links) levels.insert(link.level);
+    if (!levels.contains(level))
+        throw Error(fmt::format("--level: there are no links of level {}; there are {}", level,
+                                levels.empty() ? "none" : fmt::format("those of {}", fmt::join(levels, ", "))));
+    std::erase_if(links, [&](const TrpRadiosityLink& link) { return link.level != level; });
+}
+
 // Draws the links that were asked for over the elements.
 void draw_links(const Options& options, const LoadedPicture& picture, TrpRender* render, TrpRadiosity* radiosity) {
     std::vector<uint64_t> numbers(info_of(radiosity).links);
@@ -61,8 +72,10 @@ void draw_links(const Options& options, const LoadedPicture& picture, TrpRender*
         TrpRadiosityLink link{};
         link.struct_size = sizeof link;
         check(trp_radiosity_link(radiosity, number, &link));
-        if (options.level == Options::no_level || link.level == options.level) links.push_back(link);
+        links.push_back(link);
     }
+    if (options.level != Options::no_level) keep_level(links, options.level);
+    if (links.empty() && !options.quiet) print_warnings({"--links: there are none"});
     check(trp_render_set(render, "radiosity.mesh", "on"));
     check(trp_render_set_radiosity(render, radiosity));
     check(trp_render_run(render, nullptr));
@@ -103,6 +116,8 @@ std::string solve(const Options& options, const LoadedPicture& picture, const Re
         drawn = step;
     }
     const std::string ending = InterruptGuard::interrupted() ? interrupted_after(info_of(radiosity.get())) : "";
+    if (ending.empty() && !options.snapshots.empty() && options.snapshots.back() > steps() && !options.quiet)
+        print_warnings({fmt::format("--snapshots: it was solved after {} steps, which later ones show", steps())});
     if (options.output.empty()) return ending;
     if (options.snapshots.empty())
         draw(options, picture, render, radiosity, "radiosity");
@@ -128,10 +143,7 @@ void print_summary(const Options& options, const LoadedPicture& picture, const R
 
 // Throws a UsageError for what is wrong in the call, as far as the scene is not needed for it.
 void check_options(Options& options) {
-    if (!options.snapshots_text.empty()) {
-        if (options.output.empty()) throw UsageError("--snapshots: needs --output");
-        options.snapshots = parse_snapshots(options.snapshots_text);
-    }
+    if (!options.snapshots_text.empty()) options.snapshots = parse_snapshots(options.snapshots_text);
     check_picture(options);
     if (!options.bake.empty() && std::filesystem::u8path(options.bake).extension() != ".glb")
         throw UsageError(fmt::format("--bake: '{}' does not end in .glb", options.bake));
@@ -139,6 +151,8 @@ void check_options(Options& options) {
         if (!path->empty()) check_writable(*path);
     if (!options.output.empty()) {
         const std::filesystem::path folder = std::filesystem::u8path(options.output);
+        if (folder.extension() == ".png" || folder.extension() == ".exr")
+            throw UsageError(fmt::format("--output: '{}' is to be the folder of the pictures", options.output));
         std::error_code error;
         std::filesystem::create_directories(folder, error);
         if (error) throw Error(fmt::format("{}: the folder cannot be made: {}", options.output, error.message()));
@@ -150,7 +164,11 @@ int run(Options options) {
     InterruptGuard guard;
     LoadedPicture picture = load_picture(options);
     if (options.has_pixel) check_pixel(options, picture);
+    if (const std::string solver = setting_of(options, picture, "radiosity.solver");
+        !options.links.empty() && solver != "hierarchical")
+        throw UsageError(fmt::format("--links: the {} solver has none; radiosity.solver=hierarchical has", solver));
     const RenderHandle render = make_picture(options, picture);
+    print_unused_settings(options, picture);
     const RadiosityHandle radiosity = make_radiosity(options, picture);
     SolveCallbacks callbacks(options.quiet);
     if (!callbacks.check_whole(trp_radiosity_prepare(radiosity.get(), callbacks.get())))
@@ -190,24 +208,26 @@ Command add_radiosity_command(CLI::App& program) {
     const auto options = std::make_shared<Options>();
     options->method = "radiosity";
     add_picture_options(*app, *options);
-    app->add_option("--output", options->output,
-                    "DIR: the folder of the pictures; without snapshots, radiosity.exr and "
-                    ".png of the whole solution, or on Ctrl-C of what there is");
+    CLI::Option* output = app->add_option("--output", options->output,
+                                          "DIR: the folder of the pictures; without snapshots, radiosity.exr and "
+                                          ".png of the whole solution, or on Ctrl-C of what there is");
     app->add_option("--snapshots", options->snapshots_text,
                     "1,2,24,…: draw the solution after these steps, whatever radiosity.iterations says, into "
-                    "DIR/iteration_0001.exr and .png; on Ctrl-C after the last step");
+                    "DIR/iteration_0001.exr and .png; on Ctrl-C after the last step")
+        ->needs(output);
     app->add_option("--stats", options->stats, "Write what it cost into this file, as JSON");
     app->add_option("--bake", options->bake,
                     "FILE.glb: the scene as a mesh of its elements with their radiosity as vertex colours");
     add_pixel_option(*app, *options)
         ->description("X,Y, from the top left: the element seen there, for --links and the view form_factors");
-    app->add_option(
+    CLI::Option* links = app->add_option(
         "--links", options->links,
         "FILE.svg: the hierarchical solver's links over the elements; with --pixel, those that bring light to "
         "its element");
     app->add_option("--level", options->level,
                     "Of the links, those whose receivers were divided so often; -1: groups of elements")
-        ->check(CLI::Range(-1, 32));
+        ->check(CLI::Range(-1, 32))
+        ->needs(links);
     return {app, [options] { return run(*options); }};
 }
 

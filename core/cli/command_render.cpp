@@ -88,6 +88,7 @@ int run(RenderJob job) {
     RadiosityHandle radiosity;
     std::string ending;
     if (job.method == "radiosity") {
+        print_unused_settings(job, picture);
         radiosity = make_radiosity(job, picture);
         ending = solve(job, render.get(), radiosity.get());
     }

@@ -35,6 +35,16 @@ bool parse_numbers(const std::string& text, uint32_t* out, size_t count) {
     return begin == text.size() + 1;
 }
 
+std::string setting_of(const PictureJob& job, const LoadedPicture& picture, const std::string& name) {
+    std::string out;
+    for (const TrpSettingInfo& setting : all_settings())
+        if (name == setting.name) out = setting.default_value;
+    for (const auto* settings : {&picture.loaded.settings, &job.settings})
+        for (const auto& [given, value] : *settings)
+            if (given == name) out = value;
+    return out;
+}
+
 uint32_t PictureJob::thread_count() const {
     uint32_t count = 0;
     for (const auto& [name, value] : settings) {
@@ -43,17 +53,21 @@ uint32_t PictureJob::thread_count() const {
     return count;
 }
 
-void add_picture_options(CLI::App& app, PictureJob& job) {
+void add_scene_options(CLI::App& app, PictureJob& job) {
     app.add_option("SCENE", job.scene, "A .glb or .gltf file")->required();
-    app.add_option("--camera", job.camera, "Name of the camera; without it the scene's own, or its first");
-    app.add_option("--width", job.width, "Pixels; without it as the scene says, or 960")->check(CLI::Range(1u, 65536u));
-    app.add_option("--height", job.height, "Pixels; without it as the scene says, or 540")
-        ->check(CLI::Range(1u, 65536u));
     app.add_option("--threads", job.threads, "Threads; 0: one to a core");
     app.add_option("--set", job.set, "NAME=VALUE: a setting of `triptych settings`")
         ->take_all()
         ->allow_extra_args(false);
-    app.add_flag("--quiet", job.quiet, "No progress and no warnings");
+    app.add_flag("--quiet", job.quiet, "No warnings, and no progress, which is for terminals");
+}
+
+void add_picture_options(CLI::App& app, PictureJob& job) {
+    add_scene_options(app, job);
+    app.add_option("--camera", job.camera, "Name of the camera; without it the scene's own, or its first");
+    app.add_option("--width", job.width, "Pixels; without it as the scene says, or 960")->check(CLI::Range(1u, 65536u));
+    app.add_option("--height", job.height, "Pixels; without it as the scene says, or 540")
+        ->check(CLI::Range(1u, 65536u));
 }
 
 CLI::Option* add_pixel_option(CLI::App& app, PictureJob& job) {

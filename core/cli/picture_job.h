@@ -26,7 +26,8 @@ struct PictureJob {
     uint32_t thread_count() const;
 };
 
-// Adds SCENE and the options for the rest to a command.
+// Adds SCENE and the options for what is done with it to a command; and those for how it is seen.
+void add_scene_options(CLI::App& app, PictureJob& job);
 void add_picture_options(CLI::App& app, PictureJob& job);
 
 // Adds --pixel.
@@ -41,6 +42,9 @@ struct LoadedPicture {
     uint32_t width = 0, height = 0;
 };
 LoadedPicture load_picture(const PictureJob& job);
+
+// What a setting is by the job, the file and the table, the first of them that says so.
+std::string setting_of(const PictureJob& job, const LoadedPicture& picture, const std::string& name);
 
 // Throws a UsageError where the picture does not have the job's pixel.
 void check_pixel(const PictureJob& job, const LoadedPicture& picture);

@@ -5,10 +5,22 @@
 
 #include <algorithm>
 #include <numeric>
+#include <string_view>
+#include <utility>
 
 #include "report.h"
 
 namespace triptych::cli {
+namespace {
+
+// Settings that not all solvers use, and those that do.
+constexpr std::pair<const char*, std::string_view> kSettingsOfSolvers[] = {
+    {"radiosity.link_ratio", "hierarchical"},         {"radiosity.order", "progressive"},
+    {"radiosity.patch_levels", "progressive"},        {"radiosity.ambient", "progressive"},
+    {"radiosity.subdivisions", "matrix progressive"}, {"radiosity.memory", "matrix"},
+};
+
+}  // namespace
 
 RadiosityHandle make_radiosity(const PictureJob& job, const LoadedPicture& picture) {
     TrpRadiosity* made = nullptr;
@@ -17,6 +29,20 @@ RadiosityHandle make_radiosity(const PictureJob& job, const LoadedPicture& pictu
     for (const auto* settings : {&picture.loaded.settings, &job.settings})
         for (const auto& [name, value] : *settings) check(trp_radiosity_set(made, name.c_str(), value.c_str()));
     return radiosity;
+}
+
+void print_unused_settings(const PictureJob& job, const LoadedPicture& picture) {
+    if (job.quiet) return;
+    const std::string solver = setting_of(job, picture, "radiosity.solver");
+    std::vector<std::string> lines;
+    for (const auto& [name, value] : job.settings) {
+        for (const auto& [of_some, solvers] : kSettingsOfSolvers)
+            if (name == of_some && solvers.find(solver) == std::string_view::npos)
+                lines.push_back(fmt::format("--set {}: the {} solver does without", name, solver));
+        if (name == "radiosity.view" && value == "unshot" && solver != "progressive")
+            lines.push_back(fmt::format("--set {}={}: the {} solver shoots nothing", name, value, solver));
+    }
+    print_warnings(lines);
 }
 
 SolveCallbacks::SolveCallbacks(bool quiet) : line_(!quiet && error_is_terminal()) {

@@ -13,6 +13,9 @@ namespace triptych::cli {
 // A radiosity solution of the scene that make_picture() has committed, with the file's settings and the job's.
 RadiosityHandle make_radiosity(const PictureJob& job, const LoadedPicture& picture);
 
+// Says which of the job's settings its solver does without.
+void print_unused_settings(const PictureJob& job, const LoadedPicture& picture);
+
 // Callbacks that show progress on a terminal, and stop on an interrupt.
 class SolveCallbacks {
   public:

@@ -35,7 +35,11 @@ TEST_F(Command, RadiosityLeavesItsSnapshots) {
         EXPECT_TRUE(std::filesystem::exists(pictures / name)) << name;
     expect_error(with({"--snapshots", "1,,2", "--output", pictures.string()}), 2, "--snapshots: '1,,2'");
     expect_error(with({"--snapshots", "0", "--output", pictures.string()}), 2, "--snapshots: the first step is 1");
-    expect_error(with({"--snapshots", "1"}), 2, "--snapshots: needs --output");
+    expect_error(with({"--snapshots", "1"}), 2, "--snapshots requires --output");
+    expect_error(with({"--output", (folder / "a.png").string()}), 2, "a.png' is to be the folder of the pictures");
+    const Outcome solved = run({"radiosity", scene, "--snapshots", "1,900", "--output", pictures.string()});
+    EXPECT_EQ(solved.code, 0);
+    EXPECT_NE(solved.error.find("--snapshots: it was solved after 1 steps"), std::string::npos) << solved.error;
 }
 
 TEST_F(Command, InterruptedRadiosityShowsWhatItHas) {
@@ -125,6 +129,34 @@ TEST_F(Command, StatisticsOfWhatIsNotANumberAreNull) {
     EXPECT_TRUE(json::parse(text_of(stats))["residual"].is_null());
 }
 
+TEST_F(Command, RadiositySaysWhichSettingsItDoesWithout) {
+    const auto said = [&](const char* solver, const char* setting) {
+        return run({"radiosity", scene, "--set", std::string("radiosity.solver=") + solver, "--set", setting}).error;
+    };
+    EXPECT_NE(said("matrix", "radiosity.order=unsorted").find("--set radiosity.order: the matrix solver does without"),
+              std::string::npos);
+    EXPECT_NE(said("matrix", "radiosity.view=unshot").find("the matrix solver shoots nothing"), std::string::npos);
+    for (const char* setting : {"radiosity.order=unsorted", "radiosity.view=unshot"})
+        EXPECT_EQ(said("progressive", setting).find("--set"), std::string::npos) << setting;
+}
+
+TEST_F(Command, LinksThatAreNotThereAreAnError) {
+    scene = two_squares(folder);
+    const std::string links = (folder / "links.svg").string();
+    const auto solve = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), {"radiosity", scene, "--quiet", "--width", "32", "--height", "24"});
+        return run(more);
+    };
+    expect_error(solve({"--links", links, "--set", "radiosity.solver=matrix"}), 2,
+                 "--links: the matrix solver has none");
+    expect_error(solve({"--links", links, "--level", "20"}), 1,
+                 "--level: there are no links of level 20; there are those of ");
+    expect_error(solve({"--level", "0"}), 2, "--level requires --links");
+    EXPECT_FALSE(std::filesystem::exists(links));
+    EXPECT_EQ(solve({"--links", links}).code, 0);
+    EXPECT_NE(text_of(links).find("<path"), std::string::npos);
+}
+
 TEST_F(Command, RadiosityIsLookedInto) {
     const std::string links = (folder / "links.svg").string(), stats = (folder / "stats.json").string();
     const auto solve = [&](std::vector<std::string> more) {
@@ -164,6 +196,9 @@ TEST_F(Command, FormFactorsAreAnArray) {
     expect_error(run({"form-factors", scene, "--output", text, "--rows", "2", "--quiet"}), 2,
                  "--rows: there is no element 2; there are 2");
     expect_error(run({"form-factors", scene, "--output", "rows.txt"}), 2, "--output: 'rows.txt'");
+    expect_error(run({"form-factors", scene, "--output", text, "--element", "1"}), 2, "--element requires --picture");
+    expect_error(run({"form-factors", scene, "--picture", "a.png", "--rows", "1"}), 2, "--rows requires --output");
+    expect_error(run({"form-factors", scene, "--output", text, "--width", "64"}), 2, "--width");
 }
 
 TEST_F(Command, FormFactorsAreDrawn) {
