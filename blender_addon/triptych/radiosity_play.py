@@ -43,6 +43,7 @@ def _render(scene):
             setattr(render, name, False)
         with radiosity.as_it_is():
             bpy.ops.render.render(scene=scene.name)
+        bpy.data.images["Render Result"].reload()  # else Image Editors draw what they have
     finally:
         for name, value in before.items():
             setattr(render, name, value)
