@@ -35,6 +35,30 @@ _GROUP_LABELS = {
     "lights": "Lights",
 }
 
+# Settings of radiosity that have no effect unless these properties have one of these values.
+_BY_ROWS = {"radiosity_solver": {"matrix", "progressive"}}
+_PROGRESSIVE = {"radiosity_solver": {"progressive"}}
+_SCALED = {"radiosity_view": {"false_color", "illuminance", "form_factors"}}
+_USED_WITH = {
+    "radiosity.form_factors": _BY_ROWS,
+    "radiosity.patch_levels": _PROGRESSIVE,
+    "radiosity.subdivisions": _BY_ROWS,
+    "radiosity.link_ratio": {"radiosity_solver": {"hierarchical"}},
+    "radiosity.rays": _BY_ROWS,
+    "radiosity.hemicube_resolution": {**_BY_ROWS, "radiosity_form_factors": {"hemicube"}},
+    "radiosity.order": _PROGRESSIVE,
+    "radiosity.ambient": _PROGRESSIVE,
+    "radiosity.memory": {"radiosity_solver": {"matrix"}},
+    "radiosity.view_scale": _SCALED,
+    "radiosity.legend": _SCALED,
+    "radiosity.view_element": {"radiosity_view": {"form_factors"}},
+}
+
+
+def is_used(chosen, setting):
+    """Whether a setting of the chosen method has an effect beside the others of scene.triptych."""
+    return all(getattr(chosen, name) in values for name, values in _USED_WITH.get(setting, {}).items())
+
 
 def _blender_panels():
     """Blender's panels that are to be seen with this engine."""
@@ -110,7 +134,9 @@ def _settings_panel(group):
         chosen = context.scene.triptych
         column = self._columns().column()
         for row in _settings_of(group, chosen.method):
-            column.prop(chosen, settings.property_name(row.name))
+            line = column.row()
+            line.active = is_used(chosen, row.name)
+            line.prop(chosen, settings.property_name(row.name))
 
     def poll(cls, context):
         return context.engine == ENGINE and bool(_settings_of(group, context.scene.triptych.method))

@@ -24,7 +24,8 @@ METHODS = (
 )
 DEFAULT_METHOD = "ray_tracing"
 
-_UNITS = {"radians": "ROTATION", "metres": "LENGTH", "meters": "LENGTH"}
+_UNITS = {"radians": "ROTATION", "m": "LENGTH"}
+_NAMES = {"blackman_harris": "Blackman-Harris"}  # that are not made of words
 _INT_LIMIT = 2**31 - 1
 
 # The library's passes: name -> (Blender's name, Blender's switch on the view layer; None: ours). Others keep theirs.
@@ -141,16 +142,21 @@ def _color(setting, common):
 
 
 def _enum(setting, common):
-    items = [(choice, choice.replace("_", " ").capitalize(), "") for choice in setting.choices]
+    items = [(choice, _NAMES.get(choice) or _title(choice.replace("_", " ")), "") for choice in setting.choices]
     return EnumProperty(items=items, default=setting.default, **common)
 
 
 _MAKERS = {"BOOL": _bool, "INT": _int, "FLOAT": _float, "COLOR": _color, "ENUM": _enum}
 
 
+def _title(words):
+    """A label as Blender writes it."""
+    return " ".join(word[0].upper() + word[1:] for word in words.replace("olour", "olor").split())
+
+
 def _setting_property(setting):
     unit = f" ({setting.unit})" if setting.unit and setting.unit not in _UNITS else ""
-    common = {"name": setting.label, "description": setting.description.rstrip(".") + unit}
+    common = {"name": _title(setting.label), "description": setting.description.rstrip(".") + unit}
     return _MAKERS[setting.type](setting, common)
 
 

@@ -4,6 +4,8 @@
 What is chosen here stands in the window manager, which no file keeps.
 """
 
+from decimal import Decimal
+
 import bpy
 
 from . import generated, radiosity, radiosity_mesh, radiosity_play
@@ -43,7 +45,7 @@ class TriptychRadiosityLook(bpy.types.PropertyGroup):
         name="Picture", description="Refresh the picture in the Image Editor, by a render that solves no further"
     )
     shown: bpy.props.EnumProperty(
-        name="Colour", description="What viewports in Solid mode show", items=_VALUES, update=_recolor
+        name="Color", description="What viewports in Solid mode show", items=_VALUES, update=_recolor
     )
     scale: bpy.props.FloatProperty(
         name="White",
@@ -115,11 +117,12 @@ def state(kept):
 
 
 def _watts(values):
-    return "  ".join(f"{value:.3g}" for value in values) + " W"
+    """Plain digits; what is below a ten-thousandth counts for nothing."""
+    return "  ".join(f"{Decimal(f'{round(value, 4):.3g}'):,f}" for value in values) + " W"
 
 
 class TRIPTYCH_RENDER_PT_radiosity_shown(_Panel, bpy.types.Panel):
-    bl_label = "Shown as"
+    bl_label = "Shown As"
     bl_parent_id = "TRIPTYCH_RENDER_PT_radiosity_solution"
 
     def draw(self, context):

@@ -120,6 +120,11 @@ def test_what_ends_before_its_tolerance_is_not_called_solved(scene):
     assert radiosity.kept().info.solved and rows["Iteration"].endswith(", ended at its limit")
 
 
+def test_powers_in_plain_digits():
+    assert radiosity_panel._watts((12345, 0.98765, 0.0012)) == "12,300  0.988  0.0012 W"
+    assert radiosity_panel._watts((100, 0, 1e-9)) == "100  0  0 W"
+
+
 def test_a_walk_of_the_camera_and_views_stand(scene):
     kept = step()
     scene.camera.location.x = 1

@@ -86,6 +86,41 @@ def test_settings_have_their_defaults(scene):
 
 
 @pytest.mark.library
+def test_settings_are_named_as_blenders(scene):
+    shown = scene.triptych.bl_rna.properties
+    assert shown["radiosity_element_size"].name == "Element Size"
+    assert shown["radiosity_element_size"].unit == "LENGTH" and shown["lines_crease_angle"].unit == "ROTATION"
+    assert shown["lines_color_by"].name == "Color By"
+    assert shown["radiosity_view"].enum_items["false_color"].name == "False Color"
+    assert shown["film_filter"].enum_items["blackman_harris"].name == "Blackman-Harris"
+    for setting in core.settings():
+        name = shown[settings.property_name(setting.name)].name
+        assert name.split() == [word[0].upper() + word[1:] for word in name.split()] and "olour" not in name
+        if setting.unit and setting.type == "FLOAT":
+            unit = shown[settings.property_name(setting.name)].unit
+            assert (unit == "NONE") == (setting.unit not in {"m", "radians"}), setting.name
+
+
+@pytest.mark.library
+def test_settings_of_other_solvers_are_grey(scene):
+    names = {setting.name for setting in core.settings()}
+    assert names >= panels._USED_WITH.keys()
+    group = scene.triptych
+
+    def grey():
+        return {name for name in names if not panels.is_used(group, name)}
+
+    views = {f"radiosity.{name}" for name in ("view_scale", "legend", "view_element")}
+    by_rows = {f"radiosity.{name}" for name in ("form_factors", "subdivisions", "rays", "hemicube_resolution")}
+    progressive = {f"radiosity.{name}" for name in ("patch_levels", "order", "ambient")}
+    assert grey() == views | by_rows | progressive | {"radiosity.memory"}
+    group.radiosity_solver, group.radiosity_form_factors = "progressive", "hemicube"
+    assert grey() == views | {"radiosity.memory", "radiosity.link_ratio"}
+    group.radiosity_solver, group.radiosity_view = "matrix", "illuminance"
+    assert grey() == progressive | {"radiosity.link_ratio", "radiosity.view_element"}
+
+
+@pytest.mark.library
 def test_switch_shows_the_methods_default(scene):
     """Until it is set, and then what was set, whatever the method."""
     group = scene.triptych
