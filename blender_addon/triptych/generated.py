@@ -44,9 +44,9 @@ def _collection(scene):
     return made
 
 
-def remove(scene):
-    """Removes the objects, and their collection where the user has put nothing into it."""
-    for mark in (MESH, LINKS):
+def remove(scene, *marks):
+    """Removes the objects of these kinds, and their collection where the user has put nothing into it."""
+    for mark in marks:
         made = find(scene, mark)
         if made is not None:
             mesh = made.data

@@ -3,11 +3,13 @@
 
 Of faces, in W/m²: radiosity, irradiance, unshot, emission; reflectance; area (m²), element (its number), and the
 form_factor of a chosen element towards each. Of vertices: vertex_radiosity and vertex_irradiance. Of corners: shown,
-the colours of the viewport's Solid mode. Of links, which are edges: factor, receiver and source (−1: a group).
+the colours of the viewport's Solid mode. Of links, which are edges: factor, receiver and source (−1: a group). The
+mesh's own property is the iteration that it is of.
 """
 
 from math import dist, pi
 
+import bpy
 import numpy as np
 
 from . import abi, compat, data, generated
@@ -41,9 +43,11 @@ def update(scene, solution, look):
     compat.set_mesh_values(mesh, "area", "FACE", solution.read("area")[elements])
     compat.set_mesh_values(mesh, "vertex_radiosity", "POINT", _opaque(solution.read("vertex_radiosity")))
     compat.set_mesh_values(mesh, "vertex_irradiance", "POINT", solution.read("vertex_irradiance"))
+    mesh["iteration"] = solution.info().iterations
     color(mesh, look.shown, look.scale, scene.triptych.radiosity_smooth)
     if not made.modifiers and len(positions):
         _lift(made, _LIFT * dist(positions.min(axis=0), positions.max(axis=0)))
+    show_colors()
     return made
 
 
@@ -77,7 +81,12 @@ def _lift(made, height):
 
 
 def color(mesh, value, scale, smooth):
-    """Colours the mesh by one of its attributes, for viewports in Solid mode; scale: the value that is white, or 0."""
+    """Colours the mesh by one of its attributes, for viewports in Solid mode; scale: the value that is white, or 0.
+
+    Form factors that were not found of these elements are shown as radiosity.
+    """
+    if value == "form_factor" and not has_form_factors(mesh):
+        value = "radiosity"
     known = _SMOOTH.get(value) if smooth else None
     values = compat.mesh_values(mesh, known or value)
     if values is None:
@@ -100,6 +109,10 @@ def color(mesh, value, scale, smooth):
 
 def _opaque(colors):
     return np.hstack([colors, np.ones((len(colors), 1))]).astype(np.float32)
+
+
+def has_form_factors(mesh):
+    return "form_factor" in mesh.attributes
 
 
 def set_form_factors(made, solution):
@@ -149,10 +162,43 @@ def update_links(scene, solution, most):
 # ------------------------------------------------------------------------------------------------------------- viewport
 
 
-def show_colors(windows):
-    """Has viewports in Solid mode show the colours of meshes, as they are."""
-    for window in windows:
-        for area in window.screen.areas:
-            if area.type == "VIEW_3D":
-                shading = area.spaces.active.shading
-                shading.light, shading.color_type = "FLAT", "VERTEX"
+_BEFORE = "triptych_shading"  # of a screen: {number of an area: what its Solid mode was like before}
+_COLORED = ["FLAT", "VERTEX"]
+
+
+def show_colors(anew=False):
+    """Has viewports in Solid mode that have a mesh show its colours, as they are; each once, unless anew."""
+    for window, before in _screens():
+        if generated.find(window.scene, generated.MESH) is None:
+            continue
+        for number, shading in _solid(window.screen):
+            if number not in before:
+                before[number] = [shading.light, shading.color_type]
+            elif not anew:
+                continue
+            shading.light, shading.color_type = _COLORED
+        window.screen[_BEFORE] = before
+
+
+def hide_colors():
+    """Has viewports whose mesh is gone show what they did before, where the user has chosen nothing else since."""
+    for window, before in _screens():
+        if not before or generated.find(window.scene, generated.MESH) is not None:
+            continue
+        for number, shading in _solid(window.screen):
+            was = before.pop(number, None)
+            if was and [shading.light, shading.color_type] == _COLORED:
+                shading.light, shading.color_type = was
+        window.screen[_BEFORE] = before
+
+
+def _screens():
+    """[(window, what its screen's viewports were like)]"""
+    windows = bpy.context.window_manager.windows
+    return [(window, dict(window.screen.get(_BEFORE, {}))) for window in windows]
+
+
+def _solid(screen):
+    """[(number of the area, shading)] of a screen's viewports in Solid mode."""
+    spaces = ((str(number), area.spaces.active) for number, area in enumerate(screen.areas) if area.type == "VIEW_3D")
+    return [(number, space.shading) for number, space in spaces if space.shading.type == "SOLID"]

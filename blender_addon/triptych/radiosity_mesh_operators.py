@@ -40,14 +40,17 @@ class TRIPTYCH_OT_radiosity_mesh(_OfMesh, bpy.types.Operator):
     bl_label = "Radiosity Mesh"
     bl_description = (
         "Make a mesh of the elements, or bring it up to date: radiosity, irradiance, what is unshot and more "
-        "are its attributes. Viewports in Solid mode show its colours. No picture has it in it"
+        "are its attributes. Viewports in Solid mode show its colors. No picture has it in it, but the file that is "
+        "saved does"
     )
 
     def _work(self, context, kept):
         scene, look = context.scene, context.window_manager.triptych_radiosity
         radiosity_mesh.update(scene, kept.solution, look)
-        radiosity_mesh.show_colors(context.window_manager.windows)
-        if look.links:
+        radiosity_mesh.show_colors(anew=True)
+        if not look.links:
+            generated.remove(scene, generated.LINKS)
+        else:
             total = radiosity_mesh.update_links(scene, kept.solution, look.most_links)
             self.report({"INFO"}, f"{min(total, look.most_links)} of {total} links, the largest factors first")
 
@@ -82,7 +85,9 @@ class TRIPTYCH_OT_radiosity_form_factors(_OfMesh, bpy.types.Operator):
 class TRIPTYCH_OT_radiosity_clear(bpy.types.Operator):
     bl_idname = "triptych.radiosity_clear"
     bl_label = "Clear Radiosity Mesh"
-    bl_description = "Remove the meshes of elements and links from the scene; the solution stays"
+    bl_description = (
+        "Remove the meshes of elements and links from the scene, and their colors from viewports; the solution stays"
+    )
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod
@@ -90,18 +95,37 @@ class TRIPTYCH_OT_radiosity_clear(bpy.types.Operator):
         return any(generated.find(context.scene, mark) for mark in (generated.MESH, generated.LINKS))
 
     def execute(self, context):
-        generated.remove(context.scene)
+        generated.remove(context.scene, generated.MESH, generated.LINKS)
+        radiosity_mesh.hide_colors()
         return {"FINISHED"}
 
 
 _CLASSES = (TRIPTYCH_OT_radiosity_mesh, TRIPTYCH_OT_radiosity_form_factors, TRIPTYCH_OT_radiosity_clear)
 
 
+@bpy.app.handlers.persistent
+def _on_change(*_):
+    radiosity_mesh.hide_colors()
+
+
+@bpy.app.handlers.persistent
+def _on_undo(*_):
+    radiosity_mesh.show_colors()
+    radiosity_mesh.hide_colors()
+
+
+_HANDLERS = {"depsgraph_update_post": _on_change, "undo_post": _on_undo, "redo_post": _on_undo}
+
+
 def register():
     for one in _CLASSES:
         bpy.utils.register_class(one)
+    for name, function in _HANDLERS.items():
+        getattr(bpy.app.handlers, name).append(function)
 
 
 def unregister():
+    for name, function in _HANDLERS.items():
+        getattr(bpy.app.handlers, name).remove(function)
     for one in reversed(_CLASSES):
         bpy.utils.unregister_class(one)

@@ -138,6 +138,21 @@ class TRIPTYCH_RENDER_PT_radiosity_shown(_Panel, bpy.types.Panel):
         column = layout.column()
         for name in ("steps", "shown", "scale", "most_links"):
             column.prop(look, name)
+        for line in hints(context.scene, look):
+            layout.label(text=line, icon="INFO")
+
+
+def hints(scene, look):
+    """Lines on where the mesh is not what the panel says."""
+    made, kept = generated.find(scene, generated.MESH), radiosity.kept()
+    if made is None:
+        return []
+    lines = []
+    if look.shown == "form_factor" and not radiosity_mesh.has_form_factors(made.data):
+        lines.append("No form factors: radiosity is shown")
+    if kept is not None and kept.info is not None and made.data.get("iteration") != kept.info.iterations:
+        lines.append(f"The mesh is of iteration {made.data.get('iteration')}")
+    return lines
 
 
 _CLASSES = (TriptychRadiosityLook, TRIPTYCH_RENDER_PT_radiosity_solution, TRIPTYCH_RENDER_PT_radiosity_shown)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import stage
 from test_radiosity_steps import fails, floor, look, step  # noqa: F401 - a fixture
-from triptych import as_rendered, compat, generated, radiosity
+from triptych import as_rendered, compat, generated, radiosity, radiosity_panel
 
 pytestmark = pytest.mark.library
 
@@ -100,18 +100,50 @@ def test_colours(scene):
     assert shown() == pytest.approx(np.full((len(corners), 3), 0.5))
     look().scale = 2
     assert shown() == pytest.approx(np.full((len(corners), 3), 0.25))
-    look().shown, look().scale, scene.triptych.radiosity_smooth = "radiosity", 1, False
-    make()
-    np.testing.assert_allclose(shown(), solution.read("radiosity")[of_corners], rtol=1e-6)
-    look().shown = "form_factor"  # none was found yet
-    assert not shown().any()
+    scene.triptych.radiosity_smooth = False
+    for value in ("radiosity", "form_factor"):  # none was found yet
+        look().shown, look().scale = value, 1
+        make()
+        np.testing.assert_allclose(shown(), solution.read("radiosity")[of_corners], rtol=1e-6)
+    assert len(radiosity_panel.hints(scene, look())) == 1
 
 
-def test_viewports_show_the_colours(scene):
+def shading():
+    areas = bpy.context.window.screen.areas
+    return next(area.spaces.active.shading for area in areas if area.type == "VIEW_3D")
+
+
+def colored():
+    return (shading().light, shading().color_type) == ("FLAT", "VERTEX")
+
+
+@pytest.mark.parametrize("make_it", [make, step])
+def test_viewports_show_the_colours_while_there_is_a_mesh(scene, make_it):
+    shading().light, shading().color_type = "MATCAP", "OBJECT"
+    make_it()
+    assert colored()
+    bpy.ops.triptych.radiosity_clear()
+    assert (shading().light, shading().color_type) == ("MATCAP", "OBJECT")
+    make_it()
+    bpy.data.objects.remove(generated.find(scene, generated.MESH))
+    assert colored()
+    bpy.context.view_layer.update()
+    assert (shading().light, shading().color_type) == ("MATCAP", "OBJECT")
+
+
+def test_viewports_show_what_the_user_chooses(scene):
+    step()
+    shading().color_type = "RANDOM"
+    step()
+    assert shading().color_type == "RANDOM"
+    bpy.ops.triptych.radiosity_clear()
+    assert shading().color_type == "RANDOM"
+    shading().type = "WIREFRAME"
+    step()
+    shading().type = "SOLID"
+    assert shading().color_type == "RANDOM"
     make()
-    for area in bpy.context.window.screen.areas:
-        if area.type == "VIEW_3D":
-            assert area.spaces.active.shading.color_type == "VERTEX"
+    assert colored()
 
 
 def test_an_update_keeps_the_object_and_what_hangs_on_it(scene):
@@ -181,6 +213,21 @@ def test_steps_while_the_mesh_is_edited(scene):
     assert radiosity.kept().info.iterations == 1
     bpy.ops.object.mode_set(mode="OBJECT")
     step()
+    np.testing.assert_array_equal(values(made.data, "radiosity"), radiosity.kept().solution.read("radiosity"))
+
+
+def test_form_factors_of_elements_that_were_divided(scene):
+    group = scene.triptych
+    group.radiosity_solver, group.radiosity_element_size, group.radiosity_tolerance = "hierarchical", 0, 0.001
+    mesh = make().data
+    mesh.polygons.active = 0
+    bpy.ops.triptych.radiosity_form_factors()
+    before = len(mesh.polygons)
+    look().steps = 7
+    step()
+    assert len(mesh.polygons) > before and values(mesh, "form_factor") is None
+    assert values(mesh, "shown")[:, :3].any()
+    assert radiosity_panel.hints(scene, look()) == ["No form factors: radiosity is shown"]
 
 
 def test_form_factors_without_a_mesh(scene):
@@ -312,9 +359,9 @@ def test_undo(scene):
     bpy.ops.triptych.radiosity_mesh("EXEC_DEFAULT", True)
     bpy.ops.ed.undo()
     scene = bpy.context.scene
-    assert generated.find(scene, generated.MESH) is None
-    step()
-    assert generated.find(scene, generated.MESH) is not None
+    assert generated.find(scene, generated.MESH) is None and not colored()
+    bpy.ops.ed.redo()
+    assert generated.find(bpy.context.scene, generated.MESH) is not None and colored()
 
 
 def test_elements_without_an_area(scene):

@@ -206,7 +206,7 @@ def test_play_shows_what_a_render_has_solved(scene):
         assert operator() == {"FINISHED"} and radiosity.kept().info.iterations == iterations
         made = generated.find(scene, generated.MESH)
         assert len(made.data.polygons) == 32
-        generated.remove(scene)
+        generated.remove(scene, generated.MESH)
 
 
 @pytest.fixture
