@@ -14,6 +14,8 @@ class _OfMesh:
         return radiosity_play.can_begin(cls, context)
 
     def execute(self, context):
+        if radiosity_play.must_wait(self):
+            return {"CANCELLED"}
         try:
             kept = self._elements(context.scene)
             with radiosity.unsuspected(context.scene):

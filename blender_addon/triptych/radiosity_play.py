@@ -195,20 +195,27 @@ def stop():
 
 
 def can_begin(operator, context):
-    """For polls: whether the scene is one for radiosity, and nothing else runs."""
+    """For polls: whether the scene is one for radiosity, and no render runs.
+
+    Not whether a step does, see must_wait(): a button that turns grey under the mouse stays so until it leaves.
+    """
     if not is_chosen(context.scene):
         operator.poll_message_set("The method is not radiosity")
-    elif is_playing():
-        operator.poll_message_set("A step is running")
-    else:
-        return no_render_runs(operator)
-    return False
+        return False
+    return no_render_runs(operator)
+
+
+def must_wait(operator):
+    """Whether a step runs, which the operator tells."""
+    if is_playing():
+        operator.report({"INFO"}, "A step is running")
+    return is_playing()
 
 
 class _Advance:
     """An operator that goes on with the solution, modal where there is a user to work on meanwhile."""
 
-    bl_options = {"REGISTER"}
+    bl_options = {"REGISTER", "UNDO"}
     refreshes = None  # after which it ends; None: when it is solved
 
     @classmethod
@@ -223,6 +230,8 @@ class _Advance:
 
     def _begin(self, context):
         """Makes the player; False where that fails, and the reason is told."""
+        if must_wait(self):
+            return False
         try:
             for line in begin(context, self.refreshes):
                 self.report({"WARNING"}, line)
@@ -292,10 +301,6 @@ class TRIPTYCH_OT_radiosity_play(_Advance, bpy.types.Operator):
     bl_label = "Play"
     bl_description = "Go on step by step until it is solved, or pause. Esc pauses too"
 
-    @classmethod
-    def poll(cls, context):
-        return is_playing() or can_begin(cls, context)
-
     def execute(self, context):
         return self._pause() if is_playing() else super().execute(context)
 
@@ -304,7 +309,7 @@ class TRIPTYCH_OT_radiosity_play(_Advance, bpy.types.Operator):
 
     def _pause(self):
         _player.pause()
-        return {"FINISHED"}
+        return {"CANCELLED"}  # the undo step is that of the play
 
 
 class TRIPTYCH_OT_radiosity_reset(bpy.types.Operator):

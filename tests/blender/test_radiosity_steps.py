@@ -291,10 +291,19 @@ def play(scene):
 
 def test_play_steps_at_ticks(scene, play):
     assert play() and play() and play()
-    assert radiosity_play.is_playing() and not bpy.ops.triptych.radiosity_step.poll()
-    assert not bpy.ops.triptych.radiosity_mesh.poll()
-    assert bpy.ops.triptych.radiosity_play() == {"FINISHED"}
+    assert radiosity_play.is_playing()
+    assert bpy.ops.triptych.radiosity_play() == {"CANCELLED"}  # pauses
     assert not play() and not play.player.message
+
+
+def test_while_a_step_runs_others_wait(scene, play, capfd):
+    """Their buttons are not grey, which they would stay under the mouse."""
+    assert play()
+    for name in ("step", "mesh", "form_factors"):
+        operator = getattr(bpy.ops.triptych, f"radiosity_{name}")
+        assert operator.poll() and operator() == {"CANCELLED"}
+    assert capfd.readouterr().out.count("A step is running") == 3
+    assert play() and not play.player.message
 
 
 def test_play_ends_where_the_scene_changes(scene, play, floor):
@@ -371,6 +380,22 @@ def test_undo_while_playing(scene, play):
     while play() and not generated.find(bpy.context.scene, generated.MESH):
         pass
     assert generated.find(bpy.context.scene, generated.MESH) or play.player.message
+
+
+def test_a_step_is_an_undo_step(scene, floor):
+    bpy.ops.ed.undo_push(message="Before")
+    floor.location.x = 0.25
+    bpy.ops.ed.undo_push(message="The user's own")
+    for _ in range(2):
+        bpy.ops.triptych.radiosity_step("EXEC_DEFAULT", True)
+    bpy.ops.ed.undo()
+    scene = bpy.context.scene
+    assert generated.find(scene, generated.MESH).data["iteration"] == 1
+    assert radiosity_panel.hints(scene, look()) == ["The mesh is of iteration 1"]
+    bpy.ops.ed.undo()
+    scene = bpy.context.scene
+    assert generated.find(scene, generated.MESH) is None and scene.objects["Plane"].location.x == 0.25
+    assert step().info.iterations == 3 and radiosity_panel.hints(scene, look()) == []
 
 
 # --------------------------------------------------------------------------------------------------------------- errors
