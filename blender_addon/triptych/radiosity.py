@@ -28,14 +28,14 @@ class Kept:
     """A core.Radiosity, what it is of and how far it is.
 
     scene: the name of its bpy.types.Scene; info: abi.RadiosityInfo after the last step, or None before the first;
-    suspect: whether its scene may have changed since it was last compared.
+    suspect: whether its scene may have changed since it was last compared; outdated: whether it had changed then.
     """
 
     def __init__(self, scene, values, solution):
         self.scene, self.solution = scene, solution
         self.values = _that_matter(values)
         self.info = None
-        self.suspect = False
+        self.suspect = self.outdated = False
         self._thread = self._error = None
         self._stopping = self._closing = False
         self._in_use = threading.Lock()
@@ -156,7 +156,8 @@ def _matters(name):
 def _stands(render, values):
     """Whether the Kept is what a core.Render of these settings would find."""
     _kept.stop()
-    return _kept.values == _that_matter(values) and _kept.is_shown_by(render)
+    _kept.outdated = _kept.values != _that_matter(values) or not _kept.is_shown_by(render)
+    return not _kept.outdated
 
 
 def _begin(name, scene, values):
@@ -216,9 +217,12 @@ def at_hand(source):
 
 
 def stands(source):
-    """Whether the Kept is of a bpy.types.Scene as it stands now."""
-    with core.Scene() as scene:
-        return _compare(scene, _export(source))
+    """Whether the Kept, which was compared before, is of a bpy.types.Scene as it stands now."""
+    _evaluate(source)
+    if _kept.suspect:
+        with core.Scene() as scene:
+            _compare(scene, _export(source))
+    return not _kept.outdated
 
 
 def _export(source):

@@ -51,9 +51,19 @@ def update(scene, solution, look):
     return made
 
 
+def edited(scene):
+    """What there is to say of a mesh of ours that is in Edit Mode, where it cannot be changed; or an empty string."""
+    found = (generated.find(scene, mark) for mark in (generated.MESH, generated.LINKS))
+    return next((_edited(made) for made in found if made is not None and made.data.is_editmode), "")
+
+
+def _edited(made):
+    return f"'{made.name}' is being edited: leave Edit Mode to see it change"
+
+
 def _check_mode(made):
     if made.data.is_editmode:
-        raise data.ExportError(f"'{made.name}' is being edited: leave Edit Mode to see it change")
+        raise data.ExportError(_edited(made))
 
 
 def _is_of(mesh, offsets, corners):

@@ -40,7 +40,9 @@ class TriptychRadiosityLook(bpy.types.PropertyGroup):
         name="Steps", description="So many steps are made before what is shown is refreshed", default=1, min=1
     )
     mesh: bpy.props.BoolProperty(name="Mesh", description="Refresh the mesh of the elements", default=True)
-    links: bpy.props.BoolProperty(name="Links", description="Refresh the mesh of the hierarchical solver's links")
+    links: bpy.props.BoolProperty(
+        name="Links", description="Refresh the mesh of the hierarchical solver's links; off: it goes"
+    )
     picture: bpy.props.BoolProperty(
         name="Picture", description="Refresh the picture in the Image Editor, by a render that solves no further"
     )
@@ -90,6 +92,8 @@ class TRIPTYCH_RENDER_PT_radiosity_solution(_Panel, bpy.types.Panel):
             return
         if kept.scene != context.scene.name:
             layout.label(text=f"Of scene '{kept.scene}'", icon="INFO")
+        elif kept.outdated:
+            layout.label(text="Of the scene before it changed", icon="INFO")
         column = layout.column(align=True)
         for name, value in state(kept):
             line = column.split(factor=0.35)

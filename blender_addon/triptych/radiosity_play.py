@@ -5,7 +5,7 @@ import traceback
 
 import bpy
 
-from . import abi, data, radiosity, radiosity_mesh
+from . import abi, data, generated, radiosity, radiosity_mesh
 from .as_rendered import no_render_runs
 
 METHOD = "radiosity"
@@ -20,17 +20,28 @@ _LEFT_OUT = ("use_compositing", "use_sequencer")
 
 
 def refresh(scene, solution, look):
-    """Brings the mesh, the links and the picture up to date, as `look` (window_manager.triptych_radiosity) asks.
+    """Brings the mesh, the links and the picture up to date, as `look` (window_manager.triptych_radiosity) asks; links
+    that it does not ask for are removed, and a scene that has changed has no picture.
 
-    ExportError where one of them cannot be.
+    Gives what there is to say of meshes that are left for their being edited. ExportError where there is no picture.
     """
+    draws = look.picture and radiosity.stands(scene)
     with radiosity.unsuspected(scene):
-        if look.mesh:
-            radiosity_mesh.update(scene, solution, look)
-        if look.links:
-            radiosity_mesh.update_links(scene, solution, look.most_links)
-        if look.picture:
+        edited = radiosity_mesh.edited(scene)
+        if not edited:
+            _refresh_meshes(scene, solution, look)
+        if draws:
             _render(scene)
+    return edited
+
+
+def _refresh_meshes(scene, solution, look):
+    if look.mesh:
+        radiosity_mesh.update(scene, solution, look)
+    if look.links:
+        radiosity_mesh.update_links(scene, solution, look.most_links)
+    else:
+        generated.remove(scene, generated.LINKS)
 
 
 def _render(scene):
@@ -68,14 +79,15 @@ def is_chosen(scene):
 class Player:
     """Goes on with the kept solution of a scene while the user works: steps on a thread, refreshes at ticks of a timer.
 
-    message: why it ended, where that was no wish of the user's; failed: whether that was an error.
+    edited: see refresh(); message: why it ended, where that was no wish of the user's; failed: whether that was an
+    error.
     """
 
     def __init__(self, context, refreshes):
         self.scene = context.scene.name
         self.left = refreshes  # None: until it is solved
         self.started = self.shown = self.paused = False
-        self.message, self.failed = "", False
+        self.edited, self.message, self.failed = "", "", False
 
     def tick(self, context):
         """Does what there is to be done; False at the end."""
@@ -96,11 +108,13 @@ class Player:
         self.paused = True
 
     def break_off(self, context):
-        """Shows what a step found that was ended."""
+        """Shows what a step found that was ended, if there are elements by then."""
         scene, kept = bpy.data.scenes.get(self.scene), radiosity.kept()
         if self.started and scene is not None and kept is not None:
             try:
-                self._show(context, scene, kept)
+                kept.finish()
+                if kept.info is not None and kept.info.element_count:
+                    self._show(context, scene, kept)
             except FAILURES as error:
                 self._fail(str(error))
 
@@ -118,12 +132,12 @@ class Player:
             self._show(context, scene, kept)
             if self.left is not None:
                 self.left -= 1
+        if not radiosity.stands(scene):
+            return self._end(f"scene '{self.scene}' has changed: the next step begins anew")
         if self.left == 0 or is_done(kept, self.left is None):
             if not self.shown:  # of what a render has solved
                 self._show(context, scene, kept)
             return False
-        if kept.suspect and not radiosity.stands(scene):
-            return self._end(f"scene '{self.scene}' has changed: the next step begins anew")
         steps = context.window_manager.triptych_radiosity.steps
         kept.start(steps_left(kept, steps, self.left is None))
         self.started = True
@@ -132,7 +146,7 @@ class Player:
     def _show(self, context, scene, kept):
         self.started, self.shown = False, True
         kept.finish()
-        refresh(scene, kept.solution, context.window_manager.triptych_radiosity)
+        self.edited = refresh(scene, kept.solution, context.window_manager.triptych_radiosity)
         redraw(context)
 
     def _end(self, message):
@@ -275,13 +289,14 @@ class _Advance:
             self.report({"WARNING"}, line)
         if player.message:
             self.report({"ERROR" if player.failed else "WARNING"}, player.message)
-            return {"CANCELLED"}
-        if kept is not None and kept.info is not None:
-            self.report({"INFO"}, _told(kept.info))
-        return {"FINISHED"}
+        elif kept is not None:
+            self.report({"INFO"}, player.edited or _told(kept.info))
+        return {"FINISHED"} if player.shown else {"CANCELLED"}
 
 
 def _told(info):
+    if info is None or not (info.element_count or info.solved):
+        return "Radiosity: ended before there were elements"
     return f"Radiosity: iteration {info.iterations}, {info.element_count} elements{end_of(info)}"
 
 

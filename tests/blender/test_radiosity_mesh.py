@@ -205,13 +205,14 @@ def test_form_factors_of_a_face_that_is_selected_in_edit_mode(scene):
     np.testing.assert_array_equal(values(made.data, "form_factor"), expected)
 
 
-def test_steps_while_the_mesh_is_edited(scene):
+def test_steps_while_the_mesh_is_edited(scene, capfd):
     made = make()
     bpy.context.view_layer.objects.active = made
     bpy.ops.object.mode_set(mode="EDIT")
-    fails(bpy.ops.triptych.radiosity_step, "leave Edit Mode")
-    assert radiosity.kept().info.iterations == 1
+    assert step().info.iterations == 1 and made.mode == "EDIT"
+    assert "leave Edit Mode" in capfd.readouterr().out
     bpy.ops.object.mode_set(mode="OBJECT")
+    assert made.data["iteration"] == 0
     step()
     np.testing.assert_array_equal(values(made.data, "radiosity"), radiosity.kept().solution.read("radiosity"))
 
@@ -282,6 +283,15 @@ def test_the_first_links_join_whole_faces(scene):
 def test_other_solvers_have_no_links(scene):
     step()
     assert len(links().edges) == 0
+
+
+def test_links_that_are_not_asked_for_go(scene):
+    scene.triptych.radiosity_solver = "hierarchical"
+    for refresh in (step, make):
+        links()
+        look().links = False
+        refresh()
+        assert generated.find(scene, generated.LINKS) is None and generated.find(scene, generated.MESH)
 
 
 # --------------------------------------------------------------------------------------------------- what is left alone

@@ -313,6 +313,34 @@ def test_play_ends_where_the_scene_changes(scene, play, floor):
     while play():
         pass
     assert "'Scene' has changed" in play.player.message and not play.player.failed
+    assert radiosity.kept().outdated
+    radiosity_play.stop()
+    assert step().info.iterations == 1 and not radiosity.kept().outdated
+
+
+def test_a_change_during_the_last_step_is_told(scene, floor, tmp_path):
+    look().picture = True
+    stage.render(scene)
+    radiosity.forget()
+    radiosity_play.begin(bpy.context, 1)
+    player = radiosity_play._player
+    assert player.tick(bpy.context)
+    floor.location.z = -0.5
+    radiosity.kept().wait()
+    assert not player.tick(bpy.context)
+    assert "'Scene' has changed" in player.message and not player.failed
+    assert shown_picture(str(tmp_path / "picture.exr")).any(), "as it was"
+
+
+def test_a_step_that_is_ended_before_there_are_elements(scene):
+    scene.triptych.radiosity_element_size = 0.004
+    radiosity_play.begin(bpy.context, 1)
+    player = radiosity_play._player
+    assert player.tick(bpy.context)
+    radiosity_play.stop()
+    player.break_off(bpy.context)
+    assert not player.failed and not player.shown and radiosity.kept().info.element_count == 0
+    assert radiosity_play._told(radiosity.kept().info) == "Radiosity: ended before there were elements"
 
 
 def test_play_goes_on_where_the_camera_walks(scene, play):
