@@ -296,8 +296,28 @@ Vec3 Elements::point(const Facet& facet, float s, float t) const {
     return (p[0] * (1 - s) + p[1] * s) * (1 - t) + (p[3] * (1 - s) + p[2] * s) * t;
 }
 
+float part_below(float at_0, float change, float u) {
+    const float twice = 2 * u * (at_0 + change / 2);
+    return twice / std::max(at_0 + std::sqrt(std::max(at_0 * at_0 + change * twice, 0.0f)), 1e-37f);
+}
+
+QuadArea area_over(std::span<const Vec3d> p, const Vec3& normal) {
+    const auto at = [&](const Vec3d& along_s, const Vec3d& along_t) {
+        return static_cast<float>(along_s.cross(along_t).dot(Vec3d(normal)));
+    };
+    const float at_0 = at(p[1] - p[0], p[3] - p[0]);
+    return {at_0, at(p[1] - p[0], p[2] - p[1]) - at_0, at(p[2] - p[3], p[3] - p[0]) - at_0};
+}
+
 std::array<float, 2> Elements::coordinates_in(const Element& e, float u, float v) const {
-    if (facets_[e.facet].shape != Facet::Shape::triangle) return {e.s + u * e.ds, e.t + v * e.dt};
+    const Facet& facet = facets_[e.facet];
+    if (facet.skewed) {
+        const Vec3d p[4] = {Vec3d(corner(e, 0)), Vec3d(corner(e, 1)), Vec3d(corner(e, 2)), Vec3d(corner(e, 3))};
+        const QuadArea area = area_over(p, facet.normal);
+        v = part_below(area.at_0 + area.by_s / 2, area.by_t, v);
+        u = part_below(area.at_0 + area.by_t * v, area.by_s, u);
+    }
+    if (facet.shape != Facet::Shape::triangle) return {e.s + u * e.ds, e.t + v * e.dt};
     const float root = std::sqrt(u);
     return {e.s + root * (1 - v) * e.ds, e.t + root * v * e.dt};
 }

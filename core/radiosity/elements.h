@@ -48,6 +48,15 @@ struct Element {
     bool leaf() const { return first_child == kNoElement; }
 };
 
+// How the area of a quad is spread over its coordinates, which is linear in both: at (0, 0), and what it changes by. Of
+// no unit; constant where it is a parallelogram.
+struct QuadArea {
+    float at_0 = 1, by_s = 0, by_t = 0;
+};
+QuadArea area_over(std::span<const Vec3d> corners, const Vec3& normal);
+// The coordinate below which a share u of a density lies that is `at_0` at 0 and changes by `change` to 1.
+float part_below(float at_0, float change, float u);
+
 class Elements {
   public:
     // `size`: of the elements' sides in metres, at most; 0: one to a face. `divisible`: all faces must be quads or
@@ -89,8 +98,7 @@ class Elements {
     // in quarter i; of a polygon, a point for each.
     std::array<float, 2> place_in(uint32_t element, uint32_t number) const;
     Vec3 place_point(uint32_t element, uint32_t number) const;
-    // A point of an element by coordinates of its own, both in [0, 1]; uniform in area where u and v are, but for
-    // skewed quads, which are nearly so.
+    // A point of an element by coordinates of its own, both in [0, 1]; uniform in area where u and v are.
     Vec3 point_in(const Element& element, float u, float v) const;
     Vec3 point_in(uint32_t element, float u, float v) const { return point_in(elements_[element], u, v); }
     float radius(uint32_t element) const;  // of a ball about its centre that holds it

@@ -12,6 +12,14 @@
 HWY_BEFORE_NAMESPACE();
 namespace trp::HWY_NAMESPACE {
 
+// As part_below().
+template <class D>
+hn::Vec<D> part_below_lanes(D d, hn::Vec<D> at_0, hn::Vec<D> change, hn::Vec<D> u) {
+    const auto twice = hn::Mul(hn::Add(u, u), hn::MulAdd(change, hn::Set(d, 0.5f), at_0));
+    const auto root = hn::Sqrt(hn::Max(hn::MulAdd(at_0, at_0, hn::Mul(change, twice)), hn::Zero(d)));
+    return hn::Div(twice, hn::Max(hn::Add(at_0, root), hn::Set(d, 1e-37f)));
+}
+
 // Of a polygon, s and t stand in the place of origins.
 void make_hemisphere_lanes(const HemisphereRays::Source& source, uint32_t first, LaneVec3& origins,
                            LaneVec3& directions) {
@@ -36,6 +44,12 @@ void make_hemisphere_lanes(const HemisphereRays::Source& source, uint32_t first,
             const V root = hn::Sqrt(s);
             s = hn::Mul(root, hn::Sub(one, t));
             t = hn::Mul(root, t);
+        }
+        if (source.area.by_s != 0 || source.area.by_t != 0) {
+            const V by_s = hn::Set(d, source.area.by_s), by_t = hn::Set(d, source.area.by_t),
+                    at_0 = hn::Set(d, source.area.at_0);
+            t = part_below_lanes(d, hn::MulAdd(by_s, hn::Set(d, 0.5f), at_0), by_t, t);
+            s = part_below_lanes(d, hn::MulAdd(by_t, t, at_0), by_s, s);
         }
         const Vector3<V> point =
             add_scaled(add_scaled(add_scaled(set(source.corner), set(source.sides[0]), s), set(source.sides[1]), t),
@@ -69,7 +83,9 @@ HemisphereRays::HemisphereRays(const Elements& elements, uint32_t element, uint3
     source_.corner = Vec3(corners.front());
     source_.sides[0] = Vec3(corners[1] - corners[0]);
     source_.sides[1] = Vec3(corners.back() - corners[0]);
-    if (source_.shape == Facet::Shape::quad) source_.twist = Vec3(corners[2] - corners[1] - corners[3] + corners[0]);
+    if (source_.shape != Facet::Shape::quad) return;
+    source_.twist = Vec3(corners[2] - corners[1] - corners[3] + corners[0]);
+    if (elements.facet_of(element).skewed) source_.area = area_over(corners, elements.normal(element));
 }
 
 void HemisphereRays::make(uint32_t first, LaneVec3& origins, LaneVec3& directions) const {

@@ -39,6 +39,7 @@ class HemisphereRays {
         uint32_t key;
         Facet::Shape shape;
         Vec3 corner{0, 0, 0}, sides[2] = {{0, 0, 0}, {0, 0, 0}}, twist{0, 0, 0};
+        QuadArea area{};
     };
 
   private:

@@ -116,6 +116,34 @@ TEST(FormFactorValues, FromAPointAreTheReferences) {
     }
 }
 
+TEST(FormFactorValues, OfRaysFromATrapezoidAreThoseOfItsContour) {
+    // Its points are uniform in area, not in its coordinates.
+    for (const MeshData& trapezoid : {quad({0, 0, 0}, {1, 0, 0}, {0.6f, 1, 0}, {0.5f, 1, 0}),
+                                      quad({0.5f, 1, 0}, {0, 0, 0}, {1, 0, 0}, {0.6f, 1, 0})}) {
+        Pair pair(trapezoid, ceiling(0.5f, 0, 0.5f));
+        const double known = Solution(pair, by("matrix")).prepare().row(0)[1];
+        Solution rays(pair, of_kind("hemisphere", "radiosity.rays", 1 << 16));
+        EXPECT_NEAR(rays.prepare().row(0)[1], known, 1e-3);
+    }
+}
+
+TEST(FormFactorValues, OfContoursConvergeWithTheirRaysWhereMuchIsHidden) {
+    Pair pair(kFloor, ceiling(0.25f));
+    pair.object(quad({0, 0, 0.125f}, {0.5f, 0, 0.125f}, {0.3f, 1, 0.125f}, {0, 1, 0.125f}), wall(pair, 0));
+    const double known = Solution(pair, of_kind("hemisphere", "radiosity.rays", 1 << 18)).prepare().row(0)[1];
+    double few = 0, many = 0;  // sums of squares
+    for (uint32_t seed = 0; seed < 16; ++seed) {
+        const auto error = [&](uint32_t rays) {
+            Solution solution(pair, of_kind("analytic", "radiosity.rays", rays, seed));
+            return solution.prepare().row(0)[1] - known;
+        };
+        few += error(64) * error(64);
+        many += error(1 << 14) * error(1 << 14);
+    }
+    EXPECT_LT(std::sqrt(many / 16), 0.006);
+    EXPECT_LT(many, few / 64);
+}
+
 TEST(FormFactorValues, OfRaysConvergeAsThoseOfIndependentOnesOrFaster) {
     // The mean over all pairs of the squares of errors over those of so many independent rays, F (1 - F) / N.
     for (const uint32_t rays : {256u, 2048u, 16384u}) {
