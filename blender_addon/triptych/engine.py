@@ -146,6 +146,8 @@ class _Job:
         line = progress.stage.decode(errors="replace")
         if progress.pass_count > 1:
             line += f" | Pass {min(progress.pass_ + 1, progress.pass_count)}/{progress.pass_count}"
+        elif progress.stage == b"Solving":
+            line += f" | Iteration {progress.pass_}"
         if progress.seconds_left >= 0:
             line += f" | Remaining {_clock(progress.seconds_left)}"
         engine.update_stats("", line)

@@ -80,6 +80,11 @@ void add_lamps(const LightingJob& job, Scratch& w, LaneVec3& irradiance) {
     }
 }
 
+Vec3 dimmed(const Vec3& light, bool& any) {
+    any |= std::max({light.x, light.y, light.z}) > kGreatestLight;
+    return {std::min(light.x, kGreatestLight), std::min(light.y, kGreatestLight), std::min(light.z, kGreatestLight)};
+}
+
 // The means of an element's places that are not covered, which stand in so many lanes from `first` on.
 ElementLight mean(const Elements& elements, uint32_t element, int first, const Scratch& w) {
     const PlaneAxes axes = axes_of(elements.facet_of(element));
@@ -102,12 +107,13 @@ ElementLight mean(const Elements& elements, uint32_t element, int first, const S
             out.clamped |= reflectance[c] > kGreatestReflectance;
             out.reflectance[c] += share * std::clamp(reflectance[c], 0.0f, kGreatestReflectance);
         }
-        const Vec3 emission = w.coefficients.emission.get(i) * (alpha * std::numbers::pi_v<float>);
+        const Vec3 emission = dimmed(w.coefficients.emission.get(i) * (alpha * std::numbers::pi_v<float>), out.dimmed);
         out.emission += emission * share;
         emitted += emission * emission * share;
         const float half = 0.5f / static_cast<float>(w.pairs);
-        const Vec3 irradiance = (w.irradiance.get(i) + w.again.get(i)) * half;
-        const float differs = luminance(w.irradiance.get(i) - w.again.get(i)) * half;
+        const Vec3 once = dimmed(w.irradiance.get(i) * half, out.dimmed),
+                   again = dimmed(w.again.get(i) * half, out.dimmed), irradiance = once + again;
+        const float differs = luminance(once - again);
         chance += static_cast<double>(differs * differs * share);
         if (irradiance != Vec3(0, 0, 0) || emission != Vec3(0, 0, 0))
             out.lit = static_cast<uint16_t>(out.lit | 1u << k);

@@ -20,6 +20,7 @@ struct ElementLight {
     float noise = 0;       // the standard deviation of the irradiance by chance, as luminance
     uint16_t lit = 0;      // the places that have an emission or light of lamps, a bit to each
     bool clamped = false;  // a reflectance of 1 or more was met
+    bool dimmed = false;   // more than kGreatestLight was met
 };
 
 struct LightingJob {
@@ -32,6 +33,7 @@ struct LightingJob {
 };
 
 inline constexpr float kGreatestReflectance = 0.999f;
+inline constexpr float kGreatestLight = 1e12f;  // W/m², whose square is a number still
 
 // Of the elements [first, first + out.size()). Runs in the current arena.
 void light_elements(const LightingJob& job, uint32_t first, std::span<ElementLight> out);

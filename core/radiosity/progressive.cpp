@@ -201,7 +201,8 @@ bool ProgressiveSolver::measure(const SolverJob& job) const {
     const double unshot = brightness(all), radiated = brightness(radiated_);
     job.statistics.residual = radiated > 0 ? unshot / radiated : 0;
     const double tolerance = job.settings.radiosity.tolerance;
-    return tolerance > 0 ? unshot > tolerance * area_ : job.statistics.residual > kSolved;
+    job.statistics.wanted = tolerance > 0 ? tolerance * area_ / std::max(radiated, 1e-300) : kSolved;
+    return job.statistics.residual > job.statistics.wanted;
 }
 
 bool ProgressiveSolver::step(const SolverJob& job) {

@@ -1,6 +1,7 @@
 #include "radiosity/radiosity.h"
 
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <mutex>
 #include <set>
@@ -92,13 +93,21 @@ void Radiosity::make_elements(std::atomic<bool>& cancelled) {
 }
 
 void Radiosity::warn_of_clamped() {
-    std::set<uint32_t> clamped;
-    for (uint32_t i = 0; i < elements_->size(); ++i)
-        if (solution_.light[i].clamped) clamped.insert(elements_->facet_of(i).material);
+    std::set<uint32_t> clamped, dimmed;
+    for (uint32_t i = 0; i < elements_->size(); ++i) {
+        const uint32_t material = elements_->facet_of(i).material;
+        if (solution_.light[i].clamped) clamped.insert(material);
+        if (solution_.light[i].dimmed) dimmed.insert(material);
+    }
+    const auto warn = [&](uint32_t material, const char* what, double most) {
+        warnings_.push_back(
+            {TRP_WARNING_MATERIAL, TRP_NO_ID,
+             fmt::format("material \"{}\" {}: {:g} of it is taken", snapshot_->materials[material].name, what, most)});
+    };
     for (const uint32_t m : clamped)
-        warnings_.push_back({TRP_WARNING_MATERIAL, TRP_NO_ID,
-                             fmt::format("material \"{}\" reflects as much as it receives or more: {} of it is taken",
-                                         snapshot_->materials[m].name, kGreatestReflectance)});
+        warn(m, "reflects as much as it receives or more", static_cast<double>(kGreatestReflectance));
+    for (const uint32_t m : dimmed)
+        warn(m, "emits or receives more W/m² than can be reckoned with", static_cast<double>(kGreatestLight));
     if (elements_->size() == 0)
         warnings_.push_back({TRP_WARNING_MESH, TRP_NO_ID, "the scene has no surface to be lit"});
 }
@@ -112,6 +121,17 @@ void Radiosity::warn_of_limit() {
     warnings_.push_back({TRP_WARNING_MESH, TRP_NO_ID,
                          fmt::format("radiosity ended {}: its estimated error is {:.3g} W/m², and {:.3g} was asked for",
                                      limit, statistics_.residual, statistics_.wanted)});
+}
+
+// By steps, or the way from the first error to the one that is wanted, by its logarithm, as it falls by shares.
+void Radiosity::note_progress() {
+    const uint32_t most = settings.radiosity.iterations;
+    const double error = statistics_.residual, wanted = statistics_.wanted;
+    first_error_ = std::max(first_error_, error);
+    double done = most > 0 ? static_cast<double>(statistics_.steps) / most : 0;
+    if (wanted > 0 && error > wanted)
+        done = std::max(done, std::log(first_error_ / error) / std::log(first_error_ / wanted));
+    fraction_ = std::max(fraction_.load(), done);
 }
 
 bool Radiosity::prepare(const RenderEvents& events, std::atomic<bool>& cancelled) {
@@ -133,9 +153,9 @@ bool Radiosity::advance(uint32_t steps, const RenderEvents& events, std::atomic<
         const uint32_t before = elements_ ? elements_->size() : 0;
         for (uint32_t k = 0; (steps == 0 || k < steps) && !solved_ && !cancelled; ++k) {
             if (steps == 0 && most > 0 && statistics_.steps >= most) break;
-            fraction_ = most > 0 ? static_cast<double>(statistics_.steps) / most : 0;
             const SolverJob job{*elements_, solution_, settings, statistics_, cancelled, fraction_};
             solved_ = !solver_->step(job) && !cancelled;
+            note_progress();
         }
         if (elements_ && elements_->size() != before) vertices_.reset();  // they depend on nothing else
         if (solved_ && !was_solved) warn_of_limit();

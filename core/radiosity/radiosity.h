@@ -51,6 +51,7 @@ class Radiosity {
     void make_elements(std::atomic<bool>& cancelled);
     void warn_of_clamped();
     void warn_of_limit();
+    void note_progress();
     std::shared_ptr<const ShownSolution> make_shown(const RadiositySettings& view);
     void show_form_factors(uint32_t number, ShownSolution& out);
     // What of the settings says which values are shown.
@@ -74,7 +75,7 @@ class Radiosity {
     std::atomic<double> fraction_{0};
     std::atomic<const char*> stage_{"Preparing"};
     std::vector<Warning> warnings_;
-    double seconds_ = 0;
+    double seconds_ = 0, first_error_ = 0;
     bool solved_ = false;
 };
 

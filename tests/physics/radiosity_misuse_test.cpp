@@ -230,6 +230,48 @@ TEST(RadiosityMisuse, SaysHowMuchMemoryAMatrixNeeds) {
     EXPECT_NEAR(sum, 1, 1e-3);
 }
 
+TEST(RadiosityMisuse, OfALampThatIsTooBrightIsFinite) {
+    for (const char* solver : kSolvers) {
+        Scene scene;
+        add_cube(scene, wall(scene, 0.5f, 1e31f), wall(scene, 0.5f));
+        Solution solution(scene, by(solver));
+        solution.solve();
+        EXPECT_TRUE(std::isfinite(solution.info().residual)) << solver;
+        for (const double v : solution.red("radiosity")) ASSERT_TRUE(std::isfinite(v)) << solver;
+        ASSERT_GT(trp_radiosity_warning_count(solution), 0u) << solver;
+        TrpWarning warning{};
+        warning.struct_size = sizeof warning;
+        check(trp_radiosity_warning(solution, 0, &warning));
+        EXPECT_NE(std::string(warning.text).find("more W/m² than can be reckoned with"), std::string::npos) << solver;
+    }
+}
+
+TEST(RadiosityMisuse, ProgressGoesFromNothingToAll) {
+    Random random{std::mt19937(8)};
+    Scene scene;
+    make_room(scene, random, true);
+    for (const std::string solver : {"progressive", "hierarchical"}) {
+        Solution::Settings settings = by(solver, "hemisphere");
+        settings.insert(settings.end(), {{"radiosity.element_size", solver == "hierarchical" ? "0" : "0.05"},
+                                         {"radiosity.tolerance", solver == "hierarchical" ? "0.002" : "0"}});
+        Solution solution(scene, settings);
+        std::vector<double> fractions;
+        TrpCallbacks callbacks{};
+        callbacks.struct_size = sizeof callbacks;
+        callbacks.user = &fractions;
+        callbacks.progress = [](void* user, const TrpProgress* progress) {
+            static_cast<std::vector<double>*>(user)->push_back(progress->fraction);
+            return 1;
+        };
+        check(trp_radiosity_solve(solution, &callbacks));
+        ASSERT_GT(fractions.size(), 3u) << solver;
+        EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end())) << solver;
+        EXPECT_LT(fractions.front(), 0.5) << solver;
+        EXPECT_GT(fractions.back(), 0.5) << solver;
+        EXPECT_LE(fractions.back(), 1) << solver;
+    }
+}
+
 TEST(RadiosityMisuse, StoppedAtAnyMomentItIsValidAndGoesOn) {
     Random random{std::mt19937(8)};
     Scene scene;

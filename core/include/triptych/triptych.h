@@ -470,7 +470,7 @@ typedef struct TrpProgress {
     double fraction;          /* of the work, 0 to 1 */
     double seconds;           /* since the start */
     double seconds_left;      /* an estimate; negative while unknown */
-    uint32_t pass, pass_count; /* passes over the film, from 0 */
+    uint32_t pass, pass_count; /* passes over the film, from 0; of radiosity, steps that are done and asked for */
     const char* stage;        /* "Rendering"; valid during the call */
 } TrpProgress;
 typedef struct TrpTile {
