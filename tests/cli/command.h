@@ -69,6 +69,14 @@ class Command : public testing::Test {
         return finish(process, folder);
     }
 
+    // The same after so long that there is something to keep: sanitizers take their time.
+    Outcome interrupt_late(const std::vector<std::string>& arguments) {
+        for (int milliseconds = 1000;; milliseconds *= 2) {
+            const Outcome outcome = interrupt(arguments, milliseconds);
+            if (outcome.error != "triptych: error: interrupted\n" || milliseconds > 60000) return outcome;
+        }
+    }
+
     std::vector<std::string> render(std::vector<std::string> more = {}) {
         std::vector<std::string> arguments = {"render", scene,     "--method", "ray_casting", "--output",
                                               picture,  "--width", "64",       "--height",    "32"};

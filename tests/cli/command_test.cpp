@@ -252,7 +252,7 @@ TEST_F(Command, InterruptedRenderLeavesItsPasses) {
     const std::string stats = (folder / "stats.json").string();
     std::vector<std::string> arguments = render({"--samples", "64000", "--quiet", "--stats", stats});
     arguments[7] = arguments[9] = "128";
-    expect_error(interrupt(arguments, 2000), 130, " of 1000 passes: the picture shows them");
+    expect_error(interrupt_late(arguments), 130, " of 1000 passes: the picture shows them");
     EXPECT_EQ(text_of(picture).substr(0, 4), "\x76\x2f\x31\x01");
     EXPECT_EQ(files(), (std::vector<std::string>{"picture.exr", "stats.json"}));
 }
