@@ -44,7 +44,8 @@ struct Feeler {
 // From the middle of the face down to an edge, and past it where something is there that it stands on.
 void Feeler::along_edge(const Facet& facet, int side, uint32_t edge, std::vector<Contact>& out) {
     const auto corners = elements.corners_of(facet);
-    const Vec3 from = corners[edge], along = corners[(edge + 1) % corners.size()] - from;
+    const Vec3& from = corners[edge];
+    const Vec3 along = corners[(edge + 1) % corners.size()] - from;
     const Vec3 normal = side ? -facet.normal : facet.normal;
     Vec3 middle(0, 0, 0);
     for (const Vec3& corner : corners) middle += corner / static_cast<float>(corners.size());
