@@ -11,6 +11,7 @@ namespace {
 
 constexpr float kCornerS[4] = {0, 1, 1, 0}, kCornerT[4] = {0, 0, 1, 1};
 constexpr uint32_t kMostElements = 1u << 28;
+constexpr float kEven = 0.01f;  // of a quad's area: what it may be uneven by and count as even, as small cells do
 
 // Whether four corners lie in a plane, to a thousandth of their extent, and bend one way.
 bool is_plane_and_convex(std::span<const Vec3> p, const Vec3& normal) {
@@ -137,6 +138,10 @@ void Elements::add_facet(Facet facet, std::span<const Vec3> corners) {
     if (facet.shape == Facet::Shape::quad)
         facet.skewed = (corners[0] + corners[2] - corners[1] - corners[3]).length() >
                        1e-5f * ((corners[1] - corners[0]).length() + (corners[2] - corners[1]).length());
+    if (facet.skewed) {
+        const Vec3d p[4] = {Vec3d(corners[0]), Vec3d(corners[1]), Vec3d(corners[2]), Vec3d(corners[3])};
+        facet.spread = area_over(p, facet.normal);
+    }
     set_grid(facet);
     facets_.push_back(facet);
 }
@@ -312,10 +317,12 @@ QuadArea area_over(std::span<const Vec3d> p, const Vec3& normal) {
 std::array<float, 2> Elements::coordinates_in(const Element& e, float u, float v) const {
     const Facet& facet = facets_[e.facet];
     if (facet.skewed) {
-        const Vec3d p[4] = {Vec3d(corner(e, 0)), Vec3d(corner(e, 1)), Vec3d(corner(e, 2)), Vec3d(corner(e, 3))};
-        const QuadArea area = area_over(p, facet.normal);
-        v = part_below(area.at_0 + area.by_s / 2, area.by_t, v);
-        u = part_below(area.at_0 + area.by_t * v, area.by_s, u);
+        const QuadArea& all = facet.spread;
+        const QuadArea area = {all.at_0 + all.by_s * e.s + all.by_t * e.t, all.by_s * e.ds, all.by_t * e.dt};
+        if (std::abs(area.by_s) + std::abs(area.by_t) > kEven * area.at_0) {
+            v = part_below(area.at_0 + area.by_s / 2, area.by_t, v);
+            u = part_below(area.at_0 + area.by_t * v, area.by_s, u);
+        }
     }
     if (facet.shape != Facet::Shape::triangle) return {e.s + u * e.ds, e.t + v * e.dt};
     const float root = std::sqrt(u);

@@ -18,11 +18,21 @@ namespace trp {
 inline constexpr uint32_t kNoElement = ~0u;
 inline constexpr uint16_t kAllCovered = 0xFFFF;
 
+// How the area of a quad is spread over its coordinates, which is linear in both: at (0, 0), and what it changes by. Of
+// no unit; constant where it is a parallelogram.
+struct QuadArea {
+    float at_0 = 1, by_s = 0, by_t = 0;
+};
+QuadArea area_over(std::span<const Vec3d> corners, const Vec3& normal);
+// The coordinate below which a share u of a density lies that is `at_0` at 0 and changes by `change` to 1.
+float part_below(float at_0, float change, float u);
+
 struct Facet {
     enum class Shape : uint8_t { triangle, quad, polygon };
     uint32_t slot = 0, face = 0, triangle = 0;  // of the placed surface; the first triangle
     Shape shape = Shape::triangle;
     bool skewed = false;                          // a quad that is no parallelogram
+    QuadArea spread;                              // of a skewed one
     uint32_t first_corner = 0, corner_count = 0;  // in Elements, counter-clockwise about the normal
     Vec3 normal{0, 0, 1};
     float area = 0;
@@ -47,15 +57,6 @@ struct Element {
     double exposed_area() const { return static_cast<double>(area * exposed()); }
     bool leaf() const { return first_child == kNoElement; }
 };
-
-// How the area of a quad is spread over its coordinates, which is linear in both: at (0, 0), and what it changes by. Of
-// no unit; constant where it is a parallelogram.
-struct QuadArea {
-    float at_0 = 1, by_s = 0, by_t = 0;
-};
-QuadArea area_over(std::span<const Vec3d> corners, const Vec3& normal);
-// The coordinate below which a share u of a density lies that is `at_0` at 0 and changes by `change` to 1.
-float part_below(float at_0, float change, float u);
 
 class Elements {
   public:
