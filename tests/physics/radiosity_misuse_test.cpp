@@ -252,8 +252,8 @@ TEST(RadiosityMisuse, ProgressGoesFromNothingToAll) {
     make_room(scene, random, true);
     for (const std::string solver : {"progressive", "hierarchical"}) {
         Solution::Settings settings = by(solver, "hemisphere");
-        settings.insert(settings.end(), {{"radiosity.element_size", solver == "hierarchical" ? "0" : "0.05"},
-                                         {"radiosity.tolerance", solver == "hierarchical" ? "0.002" : "0"}});
+        settings.insert(settings.end(), {{"radiosity.element_size", solver == "hierarchical" ? "0" : "0.08"},
+                                         {"radiosity.tolerance", solver == "hierarchical" ? "0.004" : "0"}});
         Solution solution(scene, settings);
         std::vector<double> fractions;
         TrpCallbacks callbacks{};
