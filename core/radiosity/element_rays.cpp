@@ -18,8 +18,8 @@ bool has_mirrors(const Elements& elements) {
                        [&](const Facet& facet) { return (flags[facet.material] & kMirrors) != 0; });
 }
 
-ElementTracer::ElementTracer(const Elements& elements, uint32_t most_turns)
-    : elements_(elements), most_turns_(most_turns) {
+ElementTracer::ElementTracer(const Elements& elements, uint32_t most_turns, bool eye)
+    : elements_(elements), most_turns_(most_turns), eye_(eye) {
     std::fill_n(packet_.ray.tnear, 16, 0.0f);
     std::fill_n(packet_.ray.time, 16, 0.0f);
     std::fill_n(packet_.ray.mask, 16, kMask);
@@ -127,7 +127,7 @@ void ElementTracer::go_on(const ElementRay* rays, int count, std::vector<Element
     Coefficients& coefficients = passed_->coefficients;
     points.clear_footprints();
     locate(snapshot, NormalChoice::mesh, points);
-    evaluate(snapshot, points, coefficients, passed_->program);
+    evaluate(snapshot, points, coefficients, passed_->program, eye_ ? nullptr : kEveryLane.data());
     for (int i = 0; i < count; ++i) {
         if (points.slot[i] == kNoSlot) continue;
         const ElementRay& ray = rays[i];

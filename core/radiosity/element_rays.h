@@ -34,11 +34,14 @@ struct ElementHit {
 // Whether a surface that is cut into elements mirrors.
 bool has_mirrors(const Elements& elements);
 
+inline constexpr uint32_t kMostTurns = 16;
+
 // One to a thread.
 class ElementTracer {
   public:
-    // `most_turns`: surfaces that a ray may pass.
-    explicit ElementTracer(const Elements& elements, uint32_t most_turns = 16);
+    // `most_turns`: surfaces that a ray may pass. `eye`: rays are its own, which backs of one-sided surfaces let
+    // through; to light they are black.
+    explicit ElementTracer(const Elements& elements, uint32_t most_turns = kMostTurns, bool eye = false);
     // Appends to `hits`, in an order that depends on the rays alone; returns the number of rays traced. `rays` is used
     // up.
     uint64_t trace(std::vector<ElementRay>& rays, std::vector<ElementHit>& hits);
@@ -61,6 +64,7 @@ class ElementTracer {
 
     const Elements& elements_;
     uint32_t most_turns_;
+    bool eye_;
     RTCRayHit16 packet_;
     alignas(64) uint32_t met_[kBatch];  // by the batch's rays
     LaneVec3 origins_, directions_;

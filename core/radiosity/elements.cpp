@@ -48,7 +48,7 @@ bool has_width(std::span<const Vec3> polygon) {
     return polygon.size() > 2 && newell(polygon).length() > kThinnest * length2;
 }
 
-// Which sides rays may go on from.
+// Which sides rays may go on from; from the backs of one-sided surfaces, the eye's alone.
 uint8_t passes(const CompiledMaterial& material) {
     if (material.has_holes || material.transmits || material.mirrors)
         return Elements::TriangleOf::kPass | Elements::TriangleOf::kPassBehind;

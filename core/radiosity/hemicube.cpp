@@ -76,7 +76,7 @@ void draw_hemicube_face(const FormFactorJob& job, uint32_t i, int face, std::vec
             locate_seen(snapshot, NormalChoice::flat, {view.position, nullptr, w->directions}, w->points);
             if (layered) {
                 w->points.clear_footprints();
-                evaluate(snapshot, w->points, w->coefficients, w->program);
+                evaluate(snapshot, w->points, w->coefficients, w->program, kEveryLane.data());
             }
             for (int lane = 0; lane < kBatch; ++lane) {
                 const Points& points = w->points;

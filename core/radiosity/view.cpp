@@ -114,7 +114,7 @@ uint32_t element_at(const Snapshot& snapshot, const Window& window, const Elemen
     std::vector<ElementRay> rays = {
         {origin + shift + direction * (view.clip_start / -view.z.dot(direction)), direction}};
     std::vector<ElementHit> hits;
-    std::make_unique<ElementTracer>(elements)->trace(rays, hits);
+    std::make_unique<ElementTracer>(elements, kMostTurns, true)->trace(rays, hits);
     uint32_t out = kNoElement;
     float most = 0;
     for (const ElementHit& hit : hits)

@@ -114,7 +114,16 @@ void add_light(Specular specular, const Points& points, const Coefficients& coef
     (specular, points, coefficients, weight, samples, visibility, sums, of_group);
 }
 
-void evaluate(const Snapshot& snapshot, Points& points, Coefficients& coefficients, ProgramScratch& scratch) {
+namespace {
+
+void darken(Coefficients& c, int lane) {
+    for (LaneVec3* term : {&c.emission, &c.ambient, &c.diffuse, &c.specular, &c.mirror}) term->set(lane, {0, 0, 0});
+}
+
+}  // namespace
+
+void evaluate(const Snapshot& snapshot, Points& points, Coefficients& coefficients, ProgramScratch& scratch,
+              const uint8_t* light) {
     HWY_DYNAMIC_DISPATCH(gather_constants)
     (snapshot.material_rows.data(), snapshot.materials.size(), points, coefficients);
     if (points.any_program) {
@@ -138,7 +147,11 @@ void evaluate(const Snapshot& snapshot, Points& points, Coefficients& coefficien
         for (int i = 0; i < kBatch; ++i) {
             if (points.slot[i] == kNoSlot) continue;
             coefficients.alpha[i] = std::min(coefficients.alpha[i], 1.0f);
-            if (points.behind[i] && !snapshot.materials[points.material[i]].double_sided) coefficients.alpha[i] = 0;
+            if (!points.behind[i] || snapshot.materials[points.material[i]].double_sided) continue;
+            if (light && light[i])
+                darken(coefficients, i);
+            else
+                coefficients.alpha[i] = 0;
         }
 }
 

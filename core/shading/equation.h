@@ -1,6 +1,8 @@
 // The stages of shading a batch, for every method. See batch.h for their order.
 #pragma once
 
+#include <array>
+
 #include "shading/batch.h"
 #include "shading/snapshot.h"
 
@@ -22,8 +24,16 @@ struct SeenFrom {
 };
 void locate_seen(const Snapshot& snapshot, NormalChoice choice, const SeenFrom& from, Points& points);
 
-// Coefficients of the lanes with a slot; material programs may replace shading normals.
-void evaluate(const Snapshot& snapshot, Points& points, Coefficients& coefficients, ProgramScratch& scratch);
+// Coefficients of the lanes with a slot; material programs may replace shading normals. The back of a one-sided surface
+// is not seen, alpha 0; for those lanes of `light`, which are on light's way to another surface and not the eye's, it
+// stands there and is dark.
+void evaluate(const Snapshot& snapshot, Points& points, Coefficients& coefficients, ProgramScratch& scratch,
+              const uint8_t* light = nullptr);
+inline constexpr auto kEveryLane = [] {
+    std::array<uint8_t, kBatch> lanes{};
+    lanes.fill(1);
+    return lanes;
+}();
 
 // radiance = I_E + K_A I_A
 void add_ambient(const Points& points, const Coefficients& coefficients, const Vec3& ambient_light, LaneVec3& radiance);

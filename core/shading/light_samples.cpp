@@ -268,13 +268,11 @@ void sample_surface(const Snapshot& snapshot, const ReadyLight& light, const Poi
         samples.light.x[i] = 1 / (kPi * std::max(density, 1e-37f) * distance * distance);
     }
     locate(snapshot, NormalChoice::mesh, emitters);
-    evaluate(snapshot, emitters, emitted, scratch);
+    evaluate(snapshot, emitters, emitted, scratch, kEveryLane.data());
     for (int i = 0; i < kBatch; ++i) {
         if (emitters.slot[i] == kNoSlot) continue;
-        const bool dark = emitters.behind[i] && !snapshot.materials[emitters.material[i]].double_sided;
         const float cosine = std::abs(emitters.geometric_normal.get(i).dot(samples.direction.get(i)));
-        const float weight = dark ? 0 : samples.light.x[i] * cosine * emitted.alpha[i];
-        samples.light.set(i, emitted.emission.get(i) * weight);
+        samples.light.set(i, emitted.emission.get(i) * (samples.light.x[i] * cosine * emitted.alpha[i]));
     }
 }
 

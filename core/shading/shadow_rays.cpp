@@ -74,7 +74,6 @@ constexpr int kGreatestLayers = 64;  // of holes in a row along one shadow ray; 
 Vec3 passing(const Snapshot& snapshot, const Points& hits, const Coefficients& coefficients, int i,
              TransparentShadows transparent) {
     const CompiledMaterial& material = snapshot.materials[hits.material[i]];
-    if (!material.double_sided && hits.behind[i]) return {0, 0, 0};
     const float alpha = coefficients.alpha[i];
     const Vec3 one(1, 1, 1);
     if (!material.transmits || transparent == TransparentShadows::opaque) return one * (1 - alpha);
@@ -136,7 +135,7 @@ uint64_t filter_shadows(const Snapshot& snapshot, const Points& points, const Li
         if (hit_count == 0) return rays;
         std::fill(hits.slot + hit_count, hits.slot + kBatch, kNoSlot);
         locate(snapshot, NormalChoice::mesh, hits);
-        evaluate(snapshot, hits, shadow.coefficients, program);
+        evaluate(snapshot, hits, shadow.coefficients, program, kEveryLane.data());
         for (int at = 0; at < hit_count; ++at) {
             const int i = open[at];
             const Vec3 left = visibility.get(i) * passing(snapshot, hits, shadow.coefficients, at, transparent);

@@ -126,6 +126,7 @@ uint32_t Tracer::primary(uint32_t block_x, uint32_t block_y, uint32_t sample, Tr
     std::fill_n(w.media_of, kBatch, w.start);
     std::fill_n(w.travelled, kBatch, 0.0f);
     std::fill_n(w.lamps_sampled, kBatch, uint8_t{0});
+    std::fill_n(w.scattered, kBatch, uint8_t{0});
     const bool starts_inside = w.start != Media::kOutside;
     uint8_t first[kBatch] = {};
     uint64_t primary_rays = 0, primary_time = 0;
@@ -291,7 +292,10 @@ void Tracer::secondary(TreeWorkspace& w) const {
             }
             make_footprints({w.secondary.direction, false, Vec3(0, 0, 0), Vec3(0, 0, 0), w.steps}, w.points);
         }
-        for (int i = 0; i < count; ++i) w.lamps_sampled[i] = w.rays[i].lamps_sampled;
+        for (int i = 0; i < count; ++i) {
+            w.lamps_sampled[i] = w.rays[i].lamps_sampled;
+            w.scattered[i] = w.rays[i].lamps_sampled || w.rays[i].ways[static_cast<int>(Way::diffuse)] > 0;
+        }
         shade(
             Coherence::incoherent,
             [&](uint32_t pair, float* u, float* v) { random_pair_of(w.keys, w.indices, pair, u, v); }, w);

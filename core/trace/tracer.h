@@ -60,6 +60,7 @@ struct TreeWorkspace {
     LaneVec3 throughput;
     SeenLights seen;
     uint8_t active[kBatch], missed[kBatch], lamps_sampled[kBatch];
+    uint8_t scattered[kBatch];  // by a surface on the way; what the eye sees itself or in mirrors and glass is not
     alignas(64) uint32_t keys[kBatch], indices[kBatch];
     Media::State media_of[kBatch], beyond[kBatch];
     alignas(64) Lanes turn_u, turn_v, choice, survival;  // a path's random numbers at its surfaces

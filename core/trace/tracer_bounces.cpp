@@ -37,7 +37,7 @@ Vec3 lobe(const Vec3& axis, float n, float u, float v) {
 
 // The local terms of the equation at the batch's points, and what its solids are to its rays.
 void Tracer::shade(Coherence coherence, const RandomPairs& random, TreeWorkspace& w) const {
-    evaluate(snapshot, w.points, w.coefficients, w.program);
+    evaluate(snapshot, w.points, w.coefficients, w.program, w.scattered);
     cross_surfaces(w);
     for (int i = 0; i < kBatch; ++i)
         if (w.lamps_sampled[i]) w.coefficients.emission.set(i, {0, 0, 0});

@@ -181,6 +181,38 @@ TEST(PathTracing, MirrorsThrowLight) {
     EXPECT_NEAR(mean(a) / mean(b), 1, 0.02);
 }
 
+// A ceiling that glows, and below a lit floor a panel that faces down: the eye sees the floor through the panel's back,
+// also in a mirror, and the ceiling gets nothing of it, neither of the lamp nor of the floor.
+TEST(PathTracing, BacksLetTheEyeThroughAndNoLight) {
+    Scene scene;
+    const auto one_sided = [&](float reflectance, float radiance, float mirror) {
+        return scene.material([&](TrpMaterialDesc& d) {
+            d.diffuse = {{reflectance, reflectance, reflectance}, TRP_NO_NODE};
+            d.emission = {{radiance, radiance, radiance}, TRP_NO_NODE};
+            d.mirror = {{mirror, mirror, mirror}, TRP_NO_NODE};
+            d.mirror_is_specular = d.double_sided = 0;
+        });
+    };
+    const auto square = [&](float half, float z, bool up, uint32_t material) {
+        const float y = up ? half : -half;
+        scene.object(quad({-half, -y, z}, {half, -y, z}, {half, y, z}, {-half, y, z}), material);
+    };
+    square(1, 0, true, one_sided(0.5f, 0, 0));
+    square(20, 0.5f, false, one_sided(0, 0, 0));
+    scene.light(TRP_LIGHT_POINT, {1, 1, 1}, translation({0, 0, 0.25f}));
+    const uint32_t ceiling = one_sided(0.5f, 1, 0), mirror = one_sided(0, 0, 1);
+    square(1, 1, false, ceiling);
+    const auto seen = [&](Vec at) {
+        scene.camera(look_at({0, 0, 0.75f}, at, {0, 1, 0}), [](TrpCameraDesc& d) { d.field_of_view = 0.5f; });
+        return mean(path_traced(scene, 16, 16, {{"samples", "64"}}));
+    };
+    EXPECT_FLOAT_EQ(static_cast<float>(seen({0, 0, 1})), 1);
+    const double floor = seen({0, 0, 0});
+    EXPECT_GT(floor, 1);
+    square(1, 0.9f, false, mirror);
+    EXPECT_GT(seen({0, 0, 1}), floor / 2) << "in the mirror";
+}
+
 // Blurred mirrors lose nothing, blur by n, and are sharp where n is great.
 TEST(RoughMirrors, BlurByTheLobe) {
     // A mirror seen from straight above, through a disc that only rays from below see: of the lobe about the normal,

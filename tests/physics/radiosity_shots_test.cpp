@@ -69,7 +69,7 @@ TEST(RadiosityShots, MeetTheElementsThatRaysMeetOneByOne) {
                 // But for rays that meet where two elements do, by rounding.
                 EXPECT_LE(differences, 2.5 / 4096) << solver << ' ' << size << ' ' << levels << ' ' << element;
                 EXPECT_LE(sum, 1 + 1e-9);
-                EXPECT_GT(sum, double_sided ? 0.99 : 0.5);
+                EXPECT_GT(sum, double_sided ? 0.99 : 0.2);  // backs are black
             }
         }
 }

@@ -109,6 +109,39 @@ TEST(FormFactors, AreTintedByGlass) {
     }
 }
 
+TEST(Radiosity, BacksLetNoLightThrough) {
+    // A lit floor, a large panel that faces down, and a ceiling that glows: the ceiling has its own light alone, and
+    // what comes through the panel's holes, as many from behind as from the front.
+    for (const float alpha : {1.0f, 0.5f}) {
+        Scene scene;
+        scene.object(quad({-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}), wall(scene, 0.5f, 0, false));
+        scene.object(quad({-1, 1, 1}, {1, 1, 1}, {1, -1, 1}, {-1, -1, 1}), wall(scene, 0.5f, 1, false));
+        const uint32_t panel = scene.material([&](TrpMaterialDesc& d) {
+            d.diffuse = {{0, 0, 0}, TRP_NO_NODE};
+            d.alpha = {{alpha, 0, 0}, TRP_NO_NODE};
+            d.double_sided = 0;
+        });
+        scene.object(quad({-3, 3, 0.5f}, {3, 3, 0.5f}, {3, -3, 0.5f}, {-3, -3, 0.5f}), panel);
+        scene.light(TRP_LIGHT_POINT, {1, 1, 1}, translation({0, 0, 0.25f}));
+        for (const char* kind : {"analytic", "hemisphere", "hemicube"})
+            for (const char* solver : {"matrix", "progressive", "hierarchical"}) {
+                Solution solution(scene, by(solver, kind));
+                const std::vector<double> radiosity = solution.solve().red("radiosity");
+                const std::vector<float> centres = solution.read("centre", 3);
+                double ceiling = 0, floor = 0;
+                for (size_t k = 0; k < radiosity.size(); ++k) {
+                    double& most = centres[3 * k + 2] > 0.9f ? ceiling : floor;
+                    most = std::max(most, radiosity[k]);
+                }
+                EXPECT_GT(floor, 0.5) << solver << ' ' << kind;
+                if (alpha < 1)
+                    EXPECT_GT(ceiling, 1.02) << solver << ' ' << kind;
+                else
+                    EXPECT_NEAR(ceiling, 1, 1e-6) << solver << ' ' << kind;
+            }
+    }
+}
+
 // A square of radiosity 1 at a mirror half a metre above it, which hands on half of all light.
 void make_mirrored_square(Scene& scene) {
     scene.object(quad({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}), wall(scene, 0.5f, 1, false));

@@ -314,7 +314,7 @@ typedef struct TrpMaterialDesc {
     int32_t ambient_is_diffuse;  /* K_A = K_D; default 1 */
     int32_t mirror_is_specular;  /* I_R is weighed by K_S; default 1 */
     int32_t thin;                /* transmitted rays go straight on; default 0 */
-    int32_t double_sided;        /* 0: not seen, and not emitting, from behind; shadows are cast by both sides; default 1 */
+    int32_t double_sided;        /* 0: the eye sees through its back, which to all light is black and stands there; default 1 */
     int32_t index;               /* the number in the material index pass; default 0 */
     int32_t fresnel;             /* 1: I_R is also weighed by Fresnel's reflectance R of η, I_T by 1 − R; default 0 */
     int32_t priority;            /* of solids that lie in each other: the greater one fills the space; default 0 */
