@@ -1,6 +1,7 @@
 // `triptych form-factors`: the matrix of a scene's form factors, or rows of it, and pictures of one.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <bit>

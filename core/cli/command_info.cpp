@@ -1,5 +1,6 @@
 // `triptych info`: what is in a glTF file, what was left out and why. SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <memory>
 #include <nlohmann/json.hpp>

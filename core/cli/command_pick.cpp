@@ -1,5 +1,6 @@
 // `triptych pick`: how the value of a pixel is interpolated along its scan line. SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <memory>
 #include <nlohmann/json.hpp>

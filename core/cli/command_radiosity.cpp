@@ -1,6 +1,7 @@
 // `triptych radiosity`: solves a scene's radiosity, and leaves pictures of the solution. SPDX-License-Identifier:
 // Apache-2.0
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <charconv>

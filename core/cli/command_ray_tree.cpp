@@ -1,5 +1,6 @@
 // `triptych ray-tree`: the rays of a pixel, as text, JSON or a drawing. SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <memory>
 #include <nlohmann/json.hpp>

@@ -1,5 +1,6 @@
 // `triptych render`: a picture of a glTF scene by one method. SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <chrono>
 #include <memory>

@@ -1,6 +1,7 @@
 // `triptych methods`, `settings` and `passes`: the core's tables, as text and as JSON. SPDX-License-Identifier:
 // Apache-2.0
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <cmath>
 #include <memory>

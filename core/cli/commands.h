@@ -2,10 +2,12 @@
 // what it does through its return value (an exit code) or an Error. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <functional>
 #include <vector>
+
+namespace CLI {
+class App;
+}
 
 namespace triptych::cli {
 

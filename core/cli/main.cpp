@@ -1,6 +1,7 @@
 // The command `triptych`: parses the command line, runs one command, and turns what goes wrong into one line and an
 // exit code: 0 done, 1 the work failed, 2 wrong usage, 130 interrupted. SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <cstdio>
 #include <new>

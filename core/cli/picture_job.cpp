@@ -2,6 +2,7 @@
 #include "picture_job.h"
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <charconv>

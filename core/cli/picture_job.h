@@ -2,14 +2,17 @@
 // settings. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "gltf_scene.h"
 #include "handles.h"
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
 
 namespace triptych::cli {
 
