@@ -139,8 +139,7 @@ const SettingRow kSettings[] = {
     {TRP_TYPE_ENUM, "radiosity.solver", "Solver",
      "How radiosity is solved: hierarchical divides surfaces where light is uneven and links them as coarsely as the "
      "tolerance allows; progressive shoots from the brightest patch first, a picture after each step; matrix solves "
-     "the "
-     "whole system, of some thousand elements",
+     "the whole system, of some thousand elements",
      "", "hierarchical", 0, 0, kSolvers, "radiosity", "",
      [](Settings& s, const double* v) { s.radiosity.solver = static_cast<RadiositySolver>(*v); }},
     {TRP_TYPE_ENUM, "radiosity.form_factors", "Form factors",
@@ -170,8 +169,7 @@ const SettingRow kSettings[] = {
      [](Settings& s, const double* v) { s.radiosity.iterations = static_cast<uint32_t>(*v); }},
     {TRP_TYPE_FLOAT, "radiosity.tolerance", "Tolerance",
      "The error of radiosity that is allowed, as its root mean square over the area: hierarchical; or the mean that "
-     "may "
-     "stay unshot: progressive. 0: a hundredth of the mean radiosity, and a thousandth of it unshot",
+     "may stay unshot: progressive. 0: a hundredth of the mean radiosity, and a thousandth of it unshot",
      "W/m²", "0", 0, 1e9, nullptr, "radiosity", "",
      [](Settings& s, const double* v) { s.radiosity.tolerance = static_cast<float>(*v); }},
     {TRP_TYPE_FLOAT, "radiosity.link_ratio", "Link ratio",

@@ -9,6 +9,7 @@
 
 #include "base/clock.h"
 #include "base/parallel.h"
+#include "radiosity/coincident.h"
 #include "radiosity/covered.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/sides.h"
@@ -90,6 +91,48 @@ void Radiosity::make_elements(std::atomic<bool>& cancelled) {
     solution_ = std::move(solution);
     stage_ = "Solving";
     warn_of_clamped();
+    warn_of_coincident();
+    warn_of_mirrors();
+    warn_of_many_shots();
+}
+
+void Radiosity::warn_of_coincident() {
+    const Coincident faces = find_coincident(*elements_);
+    if (faces.count == 0) return;
+    const auto name = [&](uint32_t facet) { return snapshot_->surfaces[elements_->facets()[facet].slot].mesh->name; };
+    warnings_.push_back(
+        {TRP_WARNING_MESH, TRP_NO_ID,
+         fmt::format("faces lie where others do, {} of them, the first of mesh \"{}\" on mesh \"{}\": which gets "
+                     "the light is left to chance",
+                     faces.count, name(faces.first[1]), name(faces.first[0]))});
+}
+
+void Radiosity::warn_of_mirrors() {
+    std::set<uint32_t> black;
+    for (const Facet& facet : elements_->facets()) {
+        const CompiledMaterial& material = snapshot_->materials[facet.material];
+        const float* diffuse = &material.constants[kDiffuse];
+        if (material.mirrors && !material.transmits && !material.has_program() &&
+            diffuse[0] + diffuse[1] + diffuse[2] == 0)
+            black.insert(facet.material);
+    }
+    if (black.empty()) return;
+    warnings_.push_back(
+        {TRP_WARNING_MATERIAL, TRP_NO_ID,
+         fmt::format("what is a mirror and nothing else, as material \"{}\", hands light on and is black "
+                     "in pictures of radiosity ({} materials)",
+                     snapshot_->materials[*black.begin()].name, black.size())});
+}
+
+void Radiosity::warn_of_many_shots() {
+    constexpr uint32_t kMany = 10000;
+    const RadiositySettings& r = settings.radiosity;
+    if (r.solver != RadiositySolver::progressive || r.patch_levels > 0 || elements_->size() < kMany) return;
+    warnings_.push_back(
+        {TRP_WARNING_MESH, TRP_NO_ID,
+         fmt::format("{} elements will shoot one by one: with radiosity.patch_levels 2, 16 of them shoot "
+                     "together",
+                     elements_->size())});
 }
 
 void Radiosity::warn_of_clamped() {

@@ -50,6 +50,9 @@ class Radiosity {
     bool run(const RenderEvents& events, std::atomic<bool>& cancelled, const std::function<void()>& work);
     void make_elements(std::atomic<bool>& cancelled);
     void warn_of_clamped();
+    void warn_of_mirrors();
+    void warn_of_coincident();
+    void warn_of_many_shots();
     void warn_of_limit();
     void note_progress();
     std::shared_ptr<const ShownSolution> make_shown(const RadiositySettings& view);

@@ -38,6 +38,16 @@ double rms_from_2(const Solution& solution) {
 
 const MeshData kBox = box({0.2f, 0.2f, 0.2f}, {0.6f, 0.6f, 0.6f});
 
+TrpWarning first_warning(TrpRadiosity* solution) {
+    TrpWarning warning{};
+    warning.struct_size = sizeof warning;
+    check(trp_radiosity_warning(solution, 0, &warning));
+    return warning;
+}
+std::string first_text(TrpRadiosity* solution) {
+    return first_warning(solution).text;
+}
+
 TEST(RadiosityMisuse, BodiesThatCrossHideEachOther) {
     Furnace furnace({kBox, box({0.4f, 0.4f, 0.4f}, {0.8f, 0.8f, 0.8f})});
     for (const auto& [solver, kind] : {std::pair{"matrix", "analytic"},
@@ -180,9 +190,7 @@ TEST(RadiosityMisuse, ReflectanceOfOneIsHeldBelowItAndSaid) {
         expect_within(solution.solve().red("radiosity"), 0.1 * kPi - 1e-6, most, solver);
         for (const double r : solution.red("reflectance")) EXPECT_FLOAT_EQ(static_cast<float>(r), 0.999f);
         ASSERT_EQ(trp_radiosity_warning_count(solution), 1u);
-        TrpWarning warning{};
-        warning.struct_size = sizeof warning;
-        check(trp_radiosity_warning(solution, 0, &warning));
+        const TrpWarning warning = first_warning(solution);
         EXPECT_EQ(warning.code, TRP_WARNING_MATERIAL);
         EXPECT_NE(std::string(warning.text).find("snow"), std::string::npos) << warning.text;
     }
@@ -201,14 +209,60 @@ TEST(RadiosityMisuse, WhatEndsBeforeItsToleranceSaysWhy) {
     EXPECT_GT(solution.info().residual, 1e-5);
     EXPECT_EQ(solution.info().limited, TRP_LIMIT_SIZE);
     ASSERT_EQ(trp_radiosity_warning_count(solution), 1u) << "once";
-    TrpWarning warning{};
-    warning.struct_size = sizeof warning;
-    check(trp_radiosity_warning(solution, 0, &warning));
+    const TrpWarning warning = first_warning(solution);
     EXPECT_NE(std::string(warning.text).find("no element may be divided further"), std::string::npos) << warning.text;
     settings.back().second = "10";
     Solution rough(scene, settings);
     EXPECT_TRUE(rough.solve().info().solved);
     EXPECT_EQ(rough.info().limited, TRP_LIMIT_NONE);
+}
+
+TEST(RadiosityMisuse, FacesInOnePlaceAreSaid) {
+    // Quads on each other, from other corners on, at 0 and −0: the same way up, or one of both two-sided; but a sheet
+    // of two one-sided faces is sound.
+    const MeshData up = quad({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}),
+                   turned = quad({1, 1, -0.0f}, {0, 1, -0.0f}, {0, 0, -0.0f}, {1, 0, -0.0f}),
+                   down = quad({1, 1, 0}, {1, 0, 0}, {0, 0, 0}, {0, 1, 0}),
+                   beside = quad({1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0});
+    struct Case {
+        const MeshData& other;
+        bool two_sided, said;
+    };
+    for (const auto& [other, two_sided, said] :
+         {Case{turned, false, true}, Case{down, true, true}, Case{down, false, false}, Case{beside, true, false}}) {
+        Scene scene;
+        scene.object(up, wall(scene, 0.5f, 1, false));
+        scene.object(other, wall(scene, 0.5f, 1, two_sided));
+        Solution solution(scene, {});
+        solution.prepare();
+        ASSERT_EQ(trp_radiosity_warning_count(solution), said);
+        if (said) EXPECT_TRUE(first_text(solution).starts_with("faces lie where others do, 1 of them"));
+    }
+}
+
+TEST(RadiosityMisuse, WhatWouldBeSlowOrBlackIsSaid) {
+    Scene scene;
+    scene.object(floor_square(0.5f), scene.material([](TrpMaterialDesc& d) {
+        d.name = "chrome";
+        d.diffuse = {{0, 0, 0}, TRP_NO_NODE};
+        d.mirror = {{1, 1, 1}, TRP_NO_NODE};
+        d.mirror_is_specular = 0;
+    }));
+    scene.world({1, 1, 1});
+    Solution shown(scene, by("hierarchical"));
+    ASSERT_EQ(trp_radiosity_warning_count(shown.prepare()), 1u);
+    EXPECT_NE(first_text(shown).find("as material \"chrome\", hands light on"), std::string::npos) << first_text(shown);
+
+    Scene large;
+    large.object(floor_square(0.5f));
+    large.world({1, 1, 1});
+    for (const char* levels : {"0", "2"}) {
+        Solution::Settings settings = by("progressive");
+        settings.insert(settings.end(), {{"radiosity.element_size", "0.0099"}, {"radiosity.patch_levels", levels}});
+        Solution solution(large, settings);
+        ASSERT_EQ(trp_radiosity_warning_count(solution.prepare()), std::string(levels) == "0") << levels;
+        if (std::string(levels) == "0") EXPECT_NE(first_text(solution).find("patch_levels"), std::string::npos);
+    }
 }
 
 TEST(RadiosityMisuse, SaysHowMuchMemoryAMatrixNeeds) {
@@ -239,9 +293,7 @@ TEST(RadiosityMisuse, OfALampThatIsTooBrightIsFinite) {
         EXPECT_TRUE(std::isfinite(solution.info().residual)) << solver;
         for (const double v : solution.red("radiosity")) ASSERT_TRUE(std::isfinite(v)) << solver;
         ASSERT_GT(trp_radiosity_warning_count(solution), 0u) << solver;
-        TrpWarning warning{};
-        warning.struct_size = sizeof warning;
-        check(trp_radiosity_warning(solution, 0, &warning));
+        const TrpWarning warning = first_warning(solution);
         EXPECT_NE(std::string(warning.text).find("more W/m² than can be reckoned with"), std::string::npos) << solver;
     }
 }
