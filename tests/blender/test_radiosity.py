@@ -50,3 +50,21 @@ def test_another_method_gives_the_memory_back(scene):
     scene.triptych.method = "ray_casting"
     stage.render(scene)
     assert radiosity._kept is None
+
+
+def test_a_matrix_beyond_its_memory_is_refused_with_its_size(scene):
+    settings = scene.triptych
+    settings.radiosity_solver, settings.radiosity_element_size, settings.radiosity_memory = "matrix", 0.1, 1
+    stage.render(scene)
+    assert "MiB" in stage.status() and "radiosity.memory" in stage.status()
+    settings.radiosity_memory = 2048
+    assert stage.render(scene)[24, 32, 0] > 0
+
+
+@pytest.mark.parametrize("kind", ["hemicube", "hemisphere", "analytic"])
+def test_form_factors_and_subdivisions_show_what_the_lamp_does(scene, kind):
+    settings = scene.triptych
+    settings.method, settings.radiosity_solver, settings.radiosity_element_size = "ray_casting", "matrix", 0.5
+    known = stage.render(scene)[..., :3].mean()  # nothing but the floor is there to give it light
+    settings.method, settings.radiosity_form_factors, settings.radiosity_subdivisions = "radiosity", kind, 2
+    assert abs(stage.render(scene)[..., :3].mean() / known - 1) < 0.02
