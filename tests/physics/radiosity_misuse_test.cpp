@@ -236,7 +236,9 @@ TEST(RadiosityMisuse, FacesInOnePlaceAreSaid) {
         Solution solution(scene, {});
         solution.prepare();
         ASSERT_EQ(trp_radiosity_warning_count(solution), said);
-        if (said) EXPECT_TRUE(first_text(solution).starts_with("faces lie where others do, 1 of them"));
+        if (said) {
+            EXPECT_TRUE(first_text(solution).starts_with("faces lie where others do, 1 of them"));
+        }
     }
 }
 
@@ -261,7 +263,9 @@ TEST(RadiosityMisuse, WhatWouldBeSlowOrBlackIsSaid) {
         settings.insert(settings.end(), {{"radiosity.element_size", "0.0099"}, {"radiosity.patch_levels", levels}});
         Solution solution(large, settings);
         ASSERT_EQ(trp_radiosity_warning_count(solution.prepare()), std::string(levels) == "0") << levels;
-        if (std::string(levels) == "0") EXPECT_NE(first_text(solution).find("patch_levels"), std::string::npos);
+        if (std::string(levels) == "0") {
+            EXPECT_NE(first_text(solution).find("patch_levels"), std::string::npos);
+        }
     }
 }
 
