@@ -90,7 +90,7 @@ BENCHMARKS = [
         ["radiosity.cornell_box"],
         "radiosity_bench",
         "cornell_box",
-        ["--tolerance", "0.008", "--size", "192", "--error-goal", "0.01", "--seconds-goal", "2"],
+        ["--tolerance", "0.01", "--size", "192", "--error-goal", "0.01", "--seconds-goal", "2"],
     ),
     Benchmark(["radiosity.links"], "links_bench.py", ""),
     Benchmark(["radiosity.form_factors"], "form_factors_bench.py", "", python="viewfactor"),
