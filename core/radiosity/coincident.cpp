@@ -1,7 +1,8 @@
 #include "radiosity/coincident.h"
 
 #include <algorithm>
-#include <cstring>
+
+#include "geometry/weld.h"
 
 namespace trp {
 namespace {
@@ -9,15 +10,7 @@ namespace {
 // The same for the same corners in any order; others may have the same by chance.
 uint64_t place_hash(std::span<const Vec3> corners) {
     uint64_t sum = corners.size();
-    for (const Vec3& corner : corners) {
-        uint64_t hash = 0;
-        for (int c = 0; c < 3; ++c) {
-            const float value = corner[c] + 0.0f;  // no negative zero
-            hash = (hash ^ std::bit_cast<uint32_t>(value)) * 0x9E3779B97F4A7C15u;
-            hash ^= hash >> 29;
-        }
-        sum += hash;
-    }
+    for (const Vec3& corner : corners) sum += position_hash(corner);
     return sum;
 }
 
