@@ -76,7 +76,7 @@ bool ElementTracer::meet(int first, int count) {
     std::fill_n(packet_.hit.geomID, 16, RTC_INVALID_GEOMETRY_ID);
     std::fill_n(packet_.hit.instID[0], 16, RTC_INVALID_GEOMETRY_ID);
     intersect16(elements_.snapshot().rays->embree(), valid, packet_, Coherence::incoherent);
-    return find_elements(elements_, packet_, met_ + first);
+    return find_elements(elements_, packet_, eye_, met_ + first);
 }
 
 // What lane `k` of the packet has met, ray `i` of the batch, until the batch goes on.

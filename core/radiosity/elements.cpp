@@ -48,11 +48,11 @@ bool has_width(std::span<const Vec3> polygon) {
     return polygon.size() > 2 && newell(polygon).length() > kThinnest * length2;
 }
 
-// Which sides rays may go on from; from the backs of one-sided surfaces, the eye's alone.
+// Whose rays may go on from it.
 uint8_t passes(const CompiledMaterial& material) {
-    if (material.has_holes || material.transmits || material.mirrors)
-        return Elements::TriangleOf::kPass | Elements::TriangleOf::kPassBehind;
-    return material.double_sided ? 0 : Elements::TriangleOf::kPassBehind;
+    using Of = Elements::TriangleOf;
+    return static_cast<uint8_t>((material.has_holes || material.transmits || material.mirrors ? Of::kPass : 0) |
+                                (material.double_sided ? 0 : Of::kOneSided));
 }
 
 }  // namespace

@@ -112,8 +112,8 @@ class Elements {
         enum Flag : uint8_t {
             kTriangle = 1,  // the facet is one
             kSkewed = 2,    // or a quad that is no parallelogram
-            kPass = 4,      // rays may go on from the facet's front: by a hole, glass or a mirror
-            kPassBehind = 8,
+            kPass = 4,      // rays may go on from the facet: by a hole, glass or a mirror
+            kOneSided = 8,  // the eye's go on from its back, too
         };
         uint32_t facet = kNoElement;
         uint8_t corners[3] = {0, 1, 2};

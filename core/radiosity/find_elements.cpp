@@ -43,7 +43,7 @@ VI find_leaves(DI di, const uint32_t* first_children, VI element, V u, V v, M tr
     }
 }
 
-bool find_lanes(const Elements& elements, const RTCRayHit16& packet, uint32_t* out) {
+bool find_lanes(const Elements& elements, const RTCRayHit16& packet, bool eye, uint32_t* out) {
     bool any_goes_on = false;
     const hn::CappedTag<float, 16> d;
     const hn::RebindToSigned<decltype(d)> di;
@@ -129,9 +129,9 @@ bool find_lanes(const Elements& elements, const RTCRayHit16& packet, uint32_t* o
         if (look.first_children)
             element = find_leaves(di, look.first_children, element, u, v, hn::RebindMask(d, triangular),
                                   hn::RebindMask(d, exists));
-        const auto is_behind = hn::Ne(behind, zero);
-        const auto goes_on = hn::And(met, hn::Or(hn::And(is_behind, has(TriangleOf::kPassBehind)),
-                                                 hn::AndNot(is_behind, has(TriangleOf::kPass))));
+        auto passes = has(TriangleOf::kPass);
+        if (eye) passes = hn::Or(passes, hn::And(hn::Ne(behind, zero), has(TriangleOf::kOneSided)));
+        const auto goes_on = hn::And(met, passes);
         any_goes_on |= !hn::AllFalse(di, goes_on);
         const VI found = hn::IfThenElse(goes_on, hn::Set(di, static_cast<int32_t>(kGoesOn)), element);
         hn::StoreU(found, di, reinterpret_cast<int32_t*>(out + i));
@@ -146,8 +146,8 @@ HWY_AFTER_NAMESPACE();
 namespace trp {
 HWY_EXPORT(find_lanes);
 
-bool find_elements(const Elements& elements, const RTCRayHit16& packet, uint32_t* out) {
-    return HWY_DYNAMIC_DISPATCH(find_lanes)(elements, packet, out);
+bool find_elements(const Elements& elements, const RTCRayHit16& packet, bool eye, uint32_t* out) {
+    return HWY_DYNAMIC_DISPATCH(find_lanes)(elements, packet, eye, out);
 }
 
 }  // namespace trp

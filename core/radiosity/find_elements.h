@@ -10,7 +10,7 @@ namespace trp {
 inline constexpr uint32_t kGoesOn = kNoElement - 1;
 
 // The 16 elements that the rays meet, as Embree has traced them; kNoElement or kGoesOn where they meet none. Returns
-// whether any goes on.
-bool find_elements(const Elements& elements, const RTCRayHit16& packet, uint32_t* out);
+// whether any goes on. `eye`: the rays are its own, and go on from the backs of one-sided surfaces.
+bool find_elements(const Elements& elements, const RTCRayHit16& packet, bool eye, uint32_t* out);
 
 }  // namespace trp
